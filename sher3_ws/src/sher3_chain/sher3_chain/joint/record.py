@@ -29,6 +29,7 @@ from sher3_machines.intake.tables import Tables
 
 from sher3_chain.joint.counted import with_counted_clock
 from sher3_chain.joint.description import Axis, ChainDescription
+from sher3_chain.joint.fields import with_signs
 from sher3_chain.joint.moments import JITTER, Stamped, timed
 from sher3_chain.joint.speed import integrated, is_speed
 from sher3_chain.joint.units import check_units
@@ -87,10 +88,12 @@ def axes_run(name: str, tables: Tables, machine: ChainDescription) -> AxesRun:
     """
     raw: dict[str, dict[str, Stamped]] = {}
     over: dict[str, float] = {}
+    tables, signs = with_signs(tables, machine, name)
     tables, counted = with_counted_clock(tables, machine, name)
     tables, mended = _without_repeats(tables, machine, name)
     mended = counted + mended
     polled = bool(mended)
+    mended += signs
     for axis in machine.chain:
         raw[axis.name] = {
             which: _mended(column, tables, machine.time, name, (axis.name, which), mended)

@@ -31,7 +31,8 @@ def orders_in(reading: Array, position: Array, speed: Array, count: int) -> list
     if travel <= 0.0 or quick <= 0.0:
         return []
     turn, top = 2.0 * np.pi / travel, 2.0 * np.pi * BANDWIDTH / quick
-    orders = np.arange(LEAST * turn, top, turn / FINE)[:MOST]
+    tried = int(min(max(FINE * (top / turn - LEAST), 0.0), MOST))  # an axis at rest is slow without end
+    orders = turn * (LEAST + np.arange(tried) / FINE)
     plain = np.column_stack([np.ones_like(position), position, speed, np.sign(speed)])
     left = reading - plain @ np.linalg.lstsq(plain, reading, rcond=None)[0]
     power = np.array([np.abs(np.exp(-1j * n * position) @ left) for n in orders])

@@ -117,3 +117,12 @@ def test_a_motor_whose_field_starts_again_at_25_radians_may_make_many_turns():
     assert "within 25 rad; joined" in run.notes[0]
     with pytest.raises(MachineError, match="deg recorded as rad"):
         axes_run("run", {**table, "position": path, "reference": path}, motor)
+
+
+def test_an_effort_in_a_field_without_a_sign_is_signed_and_said():
+    """A current of -3 that a drive logs as 65533."""
+    current = np.round(40.0 * np.sin(0.1 * np.arange(200)))
+    axis = {"signals": columns("position", "effort"), "command_law": {"kind": "force"}, "mass": 1.0}
+    run = axes_run("run", tables(effort=np.where(current < 0.0, current + 65536.0, current)), described(**axis))
+    assert run.signals["slide"]["effort"] == pytest.approx(current)
+    assert "has 65535 for -1, as a field of 16 bits has; signed" in run.notes[0]

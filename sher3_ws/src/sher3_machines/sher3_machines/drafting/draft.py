@@ -20,54 +20,31 @@ from sher3_machines.drafting.guesses import (
     time_unit,
     travel,
 )
-from sher3_machines.drafting.names import (
-    ASKED,
-    ASKED_SPEED,
-    DERIVED,
-    DRIVING,
-    MEASURED,
-    POSITION,
-    VELOCITY,
-    counts_samples,
-    named,
-    words_of,
-)
+from sher3_machines.drafting.names import DRIVING, POSITION, named, words_of
+from sher3_machines.drafting.roles import SIGNALS, TOLD, Place, moves, placed, together, values_of
 from sher3_machines.drafting.speeds import told_by_speed
 from sher3_machines.errors import MachineError
 from sher3_machines.intake.fields import TIME_UNITS, VELOCITIES
 from sher3_machines.intake.kind import Draft
 from sher3_machines.intake.runs import longest
 from sher3_machines.intake.spelling import bare, table_of
-from sher3_machines.intake.tables import SAMPLES, Tables
+from sher3_machines.intake.tables import Tables
 from sher3_machines.intake.units import UNITS
 
-SIGNALS = ("position", "reference", "command", "effort", "load", "applied", "temperature", "velocity")
-"""Signals of an axis that a draft looks for, in the order they are written."""
 PLACES = ("reference", "load")
 """Signals that are in the unit of the position where their name says no other."""
 ROTARY_UNITS = ("rad", "mrad", "deg", "arcmin", "arcsec", "rev", "count")
 ROTARY = (*ROTARY_UNITS, "rad/s", "deg/s", "rpm")
 CARTESIAN = {"x", "y", "z"}
 """Names of axes that slide."""
-WIDEST = 12
-"""Entries of an array column that may be axes: a humanoid's arms; wider ones are matrices."""
 GEARED = 1.5
 """Travel of one encoder over that of the other from which a gear is between them."""
 MOST_GEARED = 1e5
 """Ratio beyond which two columns are not two encoders of one axis."""
 FOLLOWS = 0.9
 """Correlation of two encoders below which one does not move with the other: a held axis."""
-TOLD = {"command", "commanded", "cmd", "action"}
-"""Words for what a drive is told, whether a place or a force."""
-ASKED_FOR = ("reference", ASKED_SPEED)
-"""Signals that may stay as they are all along."""
-EVERY = "*"
-"""Axis of a signal that all axes share: one speed is asked of both wheels."""
 LISTED = 12
 """Columns that a sentence lists at most."""
-
-Place = tuple[str, int | None]
-"""A column, and the entry of it where each sample is a list."""
 
 
 def draft(path: Path, rate: float | None = None, tables: Tables | None = None) -> Draft:
@@ -108,10 +85,10 @@ def drafted(path: Path, tables: Tables, rate: float | None, guesses: list[str]) 
         time = {"column": clock if alone else bare(clock)}
         time["unit"] = time_unit(clock, tables[clock], guesses)
     period = 1.0 / rate if rate else period_of(tables[str(clock)]) * TIME_UNITS[time["unit"]]
-    placed = with_loads(with_speeds(with_output(_living(_placed(tables, clock), tables, guesses), tables)))
-    groups, left = together(placed)
-    known = {name for name, _ in placed}
-    left += [n for n, x in tables.items() if n not in known and n != clock and _moves(x)]
+    roles = placed(tables, clock, guesses)
+    groups, left = together(roles)
+    known = {name for name, _ in roles}
+    left += [n for n, x in tables.items() if n not in known and n != clock and moves(x)]
     axes = [_axis(axis, signals, tables, period, guesses) for axis, signals in groups.items()]
     told_by_speed(time, axes, tables, None if clock is None else tables[clock], guesses)
     if not axes:
@@ -128,134 +105,6 @@ def drafted(path: Path, tables: Tables, rate: float | None, guesses: list[str]) 
         more = f" and {len(left) - LISTED} more" if len(left) > LISTED else ""
         guesses.append(f"not used: {', '.join(left[:LISTED])}{more}")
     return {"kind": "axes", "name": re.sub(r"\W+", "_", path.resolve().stem), "time": time, "axes": axes}
-
-
-def _moves(x: Array) -> bool:
-    """Return whether a column, or a matrix with a row for each sample, holds more than one value."""
-    return x.ndim in (1, 2) and len(x) >= SAMPLES and float(np.ptp(x)) > 0.0
-
-
-def _placed(tables: Tables, clock: str | None) -> dict[Place, tuple[str, str]]:
-    """Return signal and axis of every column whose name says one, of tables that have stamps."""
-    lengths = {table_of(n): len(x) for n, x in tables.items() if clock and bare(n) == bare(clock)}
-    least = len(tables[clock]) if clock else 0
-    found: dict[Place, tuple[str, str]] = {}
-    for name, x in tables.items():
-        stamped = len(x) == lengths.get(table_of(name), least) or not clock
-        what = named(name)
-        if what.signal is None or not stamped or name == clock or counts_samples(name):
-            continue
-        for index in range(x.shape[1]) if x.ndim == 2 and x.shape[1] <= WIDEST else [None]:
-            if x.ndim == 1 or index is not None:
-                axis = "_".join(w for w in (what.axis, "" if index is None else str(index + 1)) if w)
-                found[name, index] = what.signal, axis
-    return found
-
-
-def _living(
-    placed: Mapping[Place, tuple[str, str]], tables: Tables, guesses: list[str]
-) -> dict[Place, tuple[str, str]]:
-    """Return the signals without what was not connected: a reading that never changes, beside places that do.
-
-    What an axis is asked for may stay.
-    """
-    dead = [p for p, (signal, _) in placed.items() if signal not in ASKED_FOR and not _moves(values_of(p, tables))]
-    alive = {p: what for p, what in placed.items() if p not in dead}
-    if not any(signal in ("position", "load", "velocity") for signal, _ in alive.values()):
-        return dict(placed)
-    if dead:
-        guesses.append(f"never changes, and is not used: {', '.join(dict.fromkeys(name for name, _ in dead))}")
-    return alive
-
-
-def with_output(placed: Mapping[Place, tuple[str, str]], tables: Tables) -> dict[Place, tuple[str, str]]:
-    """Return the signals with a column `y` as a place where none was recorded, beside one that drives: `u`, `y`."""
-    signals = {signal for signal, _ in placed.values()}
-    if signals & {"position", "load", "velocity"} or "command" not in signals or "y" not in tables:
-        return dict(placed)
-    return {**placed, ("y", None): ("position", "")}
-
-
-def with_speeds(placed: Mapping[Place, tuple[str, str]]) -> dict[Place, tuple[str, str]]:
-    """Return the signals with velocities as places, where no place was recorded at all: they are integrated.
-
-    What is asked of a speed is then the reference, and anything else that is asked what the drive is told.
-    """
-    if any(signal in ("position", "load") for signal, _ in placed.values()):
-        return dict(placed)
-    several = len({axis for signal, axis in placed.values() if signal == "velocity"}) > 1
-    asked = any(signal == ASKED_SPEED for signal, _ in placed.values())
-    out = {}
-    for p, (signal, axis) in placed.items():
-        if signal == "velocity":
-            out[p] = "position", axis
-        elif signal == ASKED_SPEED:
-            out[p] = "reference", axis or (EVERY if several else "")
-        else:
-            told = asked and signal == "reference" and set(words_of(bare(p[0]))) & TOLD
-            out[p] = "command" if told else signal, axis
-    return out
-
-
-def with_loads(placed: Mapping[Place, tuple[str, str]]) -> dict[Place, tuple[str, str]]:
-    """Return the signals with the second of two places of one axis as that of its load: the drive moves the other.
-
-    Where only trackers and scales were recorded, theirs are the places.
-    """
-    out = dict(placed)
-    if all(signal != "position" for signal, _ in placed.values()):
-        return {p: ("position" if signal == "load" else signal, axis) for p, (signal, axis) in placed.items()}
-    for axis in {axis for _, axis in placed.values()}:
-        places = [p for p, found in placed.items() if found == ("position", axis)]
-        driven = [p for p in places if set(words_of(bare(p[0]))) & DRIVING]
-        if len(places) == 2 and len(driven) == 1 and ("load", axis) not in placed.values():
-            out[next(p for p in places if p != driven[0])] = "load", axis
-    return out
-
-
-def together(placed: Mapping[Place, tuple[str, str]]) -> tuple[dict[str, dict[str, Place]], list[str]]:
-    """Return axis -> signal -> column, of axes with a position, and the columns that found no axis.
-
-    A column whose name has no axis of its own, or another one than every position, belongs to the only axis there is,
-    or to the one axis whose name ends in the same number. Of two columns for one signal the one that was measured, in
-    the table of the position, comes first.
-    """
-    groups: dict[str, dict[str, Place]] = {}
-    for place, (signal, axis) in sorted(placed.items(), key=lambda item: _rank(item[0], "")):
-        if signal == "position":
-            groups.setdefault(axis, {}).setdefault(signal, place)
-    tables = {table_of(signals["position"][0]) for signals in groups.values()}
-    table = tables.pop() if len(tables) == 1 else ""
-    left = []
-    for place, (signal, axis) in sorted(placed.items(), key=lambda item: _rank(item[0], table)):
-        if axis == EVERY:
-            for signals in groups.values():
-                signals.setdefault(signal, place)
-            continue
-        home = axis if axis in groups else _home(axis, groups)
-        if signal not in SIGNALS or home is None or groups[home].setdefault(signal, place) != place:
-            left.append(place[0])
-    return groups, list(dict.fromkeys(left))
-
-
-def _rank(place: Place, table: str) -> tuple[bool, bool, bool, bool]:
-    """Return what orders columns for one signal, the least first: in the table, measured, not made of another, and of
-    what is asked for a place.
-    """
-    words = set(words_of(bare(place[0])))
-    vague = bool(words & ASKED) and not words & (POSITION | VELOCITY)
-    return bool(table) and table_of(place[0]) != table, not words & MEASURED, bool(words & DERIVED), vague
-
-
-def _home(axis: str, groups: Mapping[str, Any]) -> str | None:
-    """Return the axis that a signal of another name belongs to; None where there is none, or more than one."""
-    if len(groups) == 1:
-        return next(iter(groups))
-    words = set(axis.split("_"))
-    fits = [x for x in groups if (axis and x and (words <= set(x.split("_")) or set(x.split("_")) <= words))]
-    number = re.search(r"\d+$", axis)
-    fits = fits or [x for x in groups if number and re.search(r"(?<!\d)" + number[0] + "$", x)]
-    return fits[0] if len(fits) == 1 else None
 
 
 def _unit_of(place: Place, x: Array) -> tuple[str, float, str]:
@@ -392,9 +241,3 @@ def _law(axis: str, columns: Mapping[str, Any], guesses: list[str]) -> dict[str,
         return {"kind": "position"}
     guesses.append(f"{axis}: undriven, because neither reference nor force was found")
     return {"kind": "none"}
-
-
-def values_of(place: Place, tables: Tables) -> Array:
-    """Return the numbers of a column or of an entry of it, without those that are not finite."""
-    x = tables[place[0]] if place[1] is None else tables[place[0]][:, place[1]]
-    return np.asarray(x[np.isfinite(x)])

@@ -110,7 +110,9 @@ def time_unit(clock: str, stamps: Array, guesses: list[str]) -> str:
         return "s"
     for unit, scale in TIME_UNITS.items():
         if USUAL_RATES[0] <= 1.0 / (period * scale) <= USUAL_RATES[1]:
-            guesses.append(f"time in {unit}: {1.0 / (period * scale):.4g} samples per second")
+            count = "; it grows by one a row, as a number of the sample does: state the rate then, --rate HZ"
+            more = count if (np.diff(stamps) == 1.0).all() else ""
+            guesses.append(f"time in {unit}: {1.0 / (period * scale):.4g} samples per second{more}")
             return unit
     guesses.append(f"time in s, though a period of {period:.4g} s is unusual")
     return "s"

@@ -38,8 +38,8 @@ ASKED = vocabulary(
 )
 MEASURED = vocabulary("actual act measured meas present est estimate estimated ist feedback fb")
 SECOND = vocabulary(
-    "load output link second secondary se scale abtrieb maßstab massstab glasmaßstab glasmassstab tracker laser "
-    "interferometer vicon mocap optitrack qualisys gt truth groundtruth"
+    "load output link ql thetal second secondary se scale abtrieb maßstab massstab glasmaßstab glasmassstab tracker "
+    "laser interferometer vicon mocap optitrack qualisys gt truth groundtruth"
 )
 IGNORED = vocabulary(
     "acceleration acc accel qdd ddq qddot ddot thetaddot xddot error err bus supply battery versorgung power leistung "
@@ -53,9 +53,13 @@ READING = vocabulary("value val wert")
 """What a channel calls its readings."""
 DERIVED = vocabulary("filt filtered filter smooth smoothed gefiltert kalman ekf")
 """What was made of a reading: taken where the reading itself was not recorded."""
-PLAIN = DERIVED | vocabulary(
-    "motor mot actuator state states joint value wert data real raw message msg sensor averaged average mean mittel"
+MODELLED = vocabulary("gravity friction damping coriolis centrifugal model modelled predicted simulated")
+"""Terms of a model that a controller logs beside its readings: taken where no reading was recorded."""
+PLAIN = vocabulary(
+    "motor mot actuator state states joint value wert data real raw message msg sensor averaged average mean mittel "
+    "abs absolute absolut inc incremental inkremental"
 )
+PLAIN |= DERIVED | MODELLED
 """Words that tell one axis from another only where nothing else does."""
 TURNING = vocabulary("az azimuth el elevation pan tilt yaw pitch roll")
 """Names of axes that, with a unit of an angle, are a position."""
@@ -71,7 +75,7 @@ PLACES = ("m", "cm", "mm", "um", "rad", "mrad", "deg", "arcmin", "arcsec", "rev"
 """Units of a position."""
 CLEAR = vocabulary("deg degree degrees rad radians rpm mm ms msec millis us usec micros sec secs seconds")
 """Words that are nothing but a unit: a name by themselves, `ms,deg,rpm`, or at its end, `speedRpm`."""
-DRIVING = vocabulary("motor mot antrieb drive schrittzähler steps schritte")
+DRIVING = vocabulary("motor mot qm thetam antrieb drive schrittzähler steps schritte")
 """The one of two places of an axis that the drive moves; the other one is that of the load."""
 WORDS = POSITION | VELOCITY | EFFORT | CURRENT | COMMAND | ASKED | MEASURED | IGNORED
 TELLING = WORDS | SECOND | TEMPERATURE | APPLIED | TURNING | TIME | COUNTERS
@@ -172,9 +176,14 @@ def _signal(words: set[str], above: set[str]) -> str | None:
 
 
 def words_of(text: str) -> list[str]:
-    """Return the words of a name in small letters: parted by signs, by capitals and by digits."""
+    """Return the words of a name in small letters: parted by signs, by capitals and by digits.
+
+    A word behind the capitals of a make is one too: `EPOSPosition`.
+    """
     text = text.replace("set_point", "sp").replace("Set Point", "sp")
-    parted = re.sub(r"(?<=[a-z])(?=[A-Z])|(?<=[A-Za-z])(?=\d)|(?<=\d)(?=[A-Za-z])", " ", text)
+    parted = re.sub(
+        r"(?<=[a-z])(?=[A-Z])|(?<=[A-Z]{2})(?=[A-Z][a-z]{2})|(?<=[A-Za-z])(?=\d)|(?<=\d)(?=[A-Za-z])", " ", text
+    )
     words = [w for w in re.split(r"[^0-9A-Za-zÀ-ÿ]+", parted.lower()) if w]
     return [part for w in words for part in _joined(w)]
 

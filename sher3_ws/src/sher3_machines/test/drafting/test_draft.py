@@ -215,3 +215,8 @@ def test_a_count_is_said_with_its_unit(tmp_path, header, count):
     np.savetxt(tmp_path / "a.csv", columns, delimiter=",", header=header, comments="")
     said = f"axis: encoder_resolution {count}, its smallest step; another unit changes it too"
     assert said in draft(tmp_path / "a.csv").guesses
+
+
+def test_a_row_number_for_a_time_is_said(tmp_path):
+    found = written(tmp_path, "Time,angle", np.arange(len(TIME)), np.sin(TIME))
+    assert any("grows by one a row" in guess and "--rate" in guess for guess in found.guesses)

@@ -1,8 +1,8 @@
 """Names of columns as people write them: which signal, of which axis."""
 
 import pytest
-from sher3_machines.drafting.draft import together
 from sher3_machines.drafting.names import bare_and_unit, named, tells_time
+from sher3_machines.drafting.roles import together
 
 
 @pytest.mark.parametrize(
@@ -56,6 +56,13 @@ from sher3_machines.drafting.names import bare_and_unit, named, tells_time
         ("joint_temperatures_0", "temperature", "0"),
         ("cart_position_m", "position", "cart"),
         ("q_m", "position", "m"),
+        ("EPOSPosition ()", "position", "epos"),
+        ("qDDot", None, ""),
+        ("wheel1_rad/s", "velocity", "wheel_1"),
+        ("target1_rad/s", "asked speed", "1"),
+        ("motor_inc_position", "position", ""),
+        ("Gravity Torque [Nm]", "effort", ""),
+        ("ql", "load", ""),
         ("PosSet_mm", "reference", ""),
         ("gyro_deg_s", "velocity", ""),
         ("left_ticks", "position", "left"),

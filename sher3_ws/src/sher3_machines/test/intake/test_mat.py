@@ -29,6 +29,14 @@ def test_rows_of_a_struct_array_are_stacked(tmp_path):
     assert found["rows/t"].ravel().tolist() == [1.0, 2.0] and found["rows/q"].shape == (2, 2)
 
 
+def test_cells_are_numbered(tmp_path):
+    cells = np.empty((1, 3), dtype=object)
+    cells[0, :] = [np.ones((4, 2)), np.ones((5, 2)), "text"]
+    scipy.io.savemat(tmp_path / "a.mat", {"joints": cells})
+    found = read_tables(tmp_path / "a.mat")
+    assert {name: x.shape for name, x in found.items()} == {"joints/1": (4, 2), "joints/2": (5, 2)}
+
+
 @pytest.mark.parametrize(
     "text", [b"", b"MATLAB 7.3 MAT-file, Platform", b"MATLAB 5.0 MAT-file" + bytes(200), bytes(500)]
 )

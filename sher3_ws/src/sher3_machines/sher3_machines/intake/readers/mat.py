@@ -24,6 +24,8 @@ STEP = 1 << 20
 """Bytes that are unpacked at a time while they are counted."""
 MAX_DEPTH = 8
 """Structs within structs that are opened."""
+MOST_CELLS = 200
+"""Cells that are opened: runs, or joints; those of a table of text are more."""
 CLASS = "_Class"
 """Field of what the reader makes of a class object."""
 NAMES, NUMBERS = ("name", "label"), ("data", "values")
@@ -73,11 +75,20 @@ def flatten(name: str, value: Any, depth: int = 0) -> dict[str, Array]:
                 for key, array in found.items():
                     merged.setdefault(f"{name}/{key}" if name else key, []).append(array)
         return {key: stacked(arrays) for key, arrays in merged.items() if len(arrays) == len(parts)}
-    if x.dtype == object and x.size == 1:
-        return flatten(name, x.ravel()[0], depth + 1)
+    if x.dtype == object:
+        return _cells(name, x, depth)
     if x.dtype.kind in "fiub" and x.ndim and x.size:
         return {name: plain(x)}
     return {}
+
+
+def _cells(name: str, x: Any, depth: int) -> dict[str, Array]:
+    """Return the arrays in a cell array: of one cell under its own name, of several numbered from one; `name/2`."""
+    if x.size > MOST_CELLS:
+        return {}
+    titles = [name] if x.size == 1 else [f"{name}/{i + 1}" for i in range(x.size)]
+    parts = (flatten(title, cell, depth + 1) for title, cell in zip(titles, x.ravel(), strict=True))
+    return {key: array for part in parts for key, array in part.items()}
 
 
 def _titled(x: Any) -> dict[str, Array]:

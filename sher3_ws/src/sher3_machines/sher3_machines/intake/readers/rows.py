@@ -32,8 +32,45 @@ def columns_of(rows: Rows, comma: bool, names: Sequence[str] = ()) -> dict[str, 
         names: of the columns, where they stand outside of the rows and the rows have no header.
 
     Of columns of one name the second is `NAME.2`; loggers write the stamps of each channel again: those are left out.
+    Of several tables, one below the other with a header each, the columns stand side by side.
     """
     rows = rows[_titles(rows, comma) :]
+    below = _second_header(rows, comma)
+    if below is not None and rows[0] == rows[below]:  # one log that was begun again
+        return columns_of([row for row in rows if row != rows[0] or row is rows[0]], comma, names)
+    first = _one_table(rows[:below], comma, names)
+    return first if below is None else _beside(first, columns_of(rows[below:], comma))
+
+
+def _second_header(rows: Rows, comma: bool) -> int | None:
+    """Return the row that is the header of a further table: words, in the columns of the numbers below it."""
+    usual = rows[usual_row(len(rows))]
+    told = next((i for i, cell in enumerate(usual) if _is_number(cell, comma)), None)
+    if told is None or any(_is_number(cell, comma) for cell in rows[0]):
+        return None
+    words = (i for i, row in enumerate(rows[:-1]) if i > 1 and told < len(row) and not _is_number(row[told], comma))
+    return next((i for i in words if _is_header(rows[i], rows[i + 1], comma)), None)
+
+
+def _is_header(row: Sequence[str], after: Sequence[str], comma: bool) -> bool:
+    """Return whether a row holds several words and no number, and the row after it numbers in the same columns."""
+    words = {i for i, cell in enumerate(row) if _filled(cell)}
+    numbers = {i for i, cell in enumerate(after) if _is_number(cell, comma)}
+    return len(words) > 1 and words == numbers and not any(_is_number(row[i], comma) for i in words)
+
+
+def _beside(first: dict[str, Array], more: dict[str, Array]) -> dict[str, Array]:
+    """Return the columns of two tables; a column that both have is one, or of another name where it differs."""
+    out = dict(first)
+    for name, x in more.items():
+        same = [known for known in out if known == name or known.startswith(f"{name}.")]
+        if not any(np.array_equal(out[known], x, equal_nan=True) for known in same):
+            out[f"{name}.{len(same) + 1}" if same else name] = x
+    return out
+
+
+def _one_table(rows: Rows, comma: bool, names: Sequence[str]) -> dict[str, Array]:
+    """Return the numeric columns of rows below a header, or without one."""
     if all(value_of(cell, comma) is not None for cell in rows[0]):
         header = list(names) if len(names) == len(rows[0]) else [f"c{i}" for i in range(len(rows[0]))]
     else:

@@ -1,0 +1,198 @@
+"""Which signal of which axis each column is: of one by its name, of several by what stands beside them."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from sher3_diagnosis.channel import Array
+
+from sher3_machines.drafting.names import (
+    APPLIED,
+    ASKED,
+    ASKED_SPEED,
+    DERIVED,
+    DRIVING,
+    FORCES,
+    MEASURED,
+    MODELLED,
+    POSITION,
+    VELOCITY,
+    counts_samples,
+    named,
+    words_of,
+)
+from sher3_machines.intake.spelling import bare, table_of
+from sher3_machines.intake.tables import SAMPLES, Tables
+
+SIGNALS = ("position", "reference", "command", "effort", "load", "applied", "temperature", "velocity")
+"""Signals of an axis that a draft looks for, in the order they are written."""
+WIDEST = 12
+"""Entries of an array column that may be axes: a humanoid's arms; wider ones are matrices."""
+TOLD = {"command", "commanded", "cmd", "action"}
+"""Words for what a drive is told, whether a place or a force."""
+ASKED_FOR = ("reference", ASKED_SPEED)
+"""Signals that may stay as they are all along."""
+EVERY = "*"
+"""Axis of a signal that all axes share: one speed is asked of both wheels."""
+
+Place = tuple[str, int | None]
+"""A column, and the entry of it where each sample is a list."""
+
+
+def placed(tables: Tables, clock: str | None, guesses: list[str]) -> dict[Place, tuple[str, str]]:
+    """Return signal and axis of every column whose name, or what stands beside it, says one."""
+    living = _living(_named(tables, clock), tables, guesses)
+    return with_loads(with_speeds(with_drive(with_output(living, tables))))
+
+
+def _named(tables: Tables, clock: str | None) -> dict[Place, tuple[str, str]]:
+    """Return signal and axis of every column whose name says one, of tables that have stamps."""
+    lengths = {table_of(n): len(x) for n, x in tables.items() if clock and bare(n) == bare(clock)}
+    least = len(tables[clock]) if clock else 0
+    found: dict[Place, tuple[str, str]] = {}
+    for name, x in tables.items():
+        stamped = len(x) == lengths.get(table_of(name), least) or not clock
+        what = named(name)
+        if what.signal is None or not stamped or name == clock or counts_samples(name):
+            continue
+        for index in range(x.shape[1]) if x.ndim == 2 and x.shape[1] <= WIDEST else [None]:
+            if x.ndim == 1 or index is not None:
+                axis = "_".join(w for w in (what.axis, "" if index is None else str(index + 1)) if w)
+                found[name, index] = what.signal, axis
+    return found
+
+
+def _living(
+    placed: Mapping[Place, tuple[str, str]], tables: Tables, guesses: list[str]
+) -> dict[Place, tuple[str, str]]:
+    """Return the signals without what was not connected: a reading that never changes, beside places that do.
+
+    What an axis is asked for may stay.
+    """
+    dead = [p for p, (signal, _) in placed.items() if signal not in ASKED_FOR and not moves(values_of(p, tables))]
+    alive = {p: what for p, what in placed.items() if p not in dead}
+    if not any(signal in ("position", "load", "velocity") for signal, _ in alive.values()):
+        return dict(placed)
+    if dead:
+        guesses.append(f"never changes, and is not used: {', '.join(dict.fromkeys(name for name, _ in dead))}")
+    return alive
+
+
+def with_output(placed: Mapping[Place, tuple[str, str]], tables: Tables) -> dict[Place, tuple[str, str]]:
+    """Return the signals with a column `y` as a place where none was recorded, beside one that drives: `u`, `y`."""
+    signals = {signal for signal, _ in placed.values()}
+    if signals & {"position", "load", "velocity"} or "command" not in signals or "y" not in tables:
+        return dict(placed)
+    return {**placed, ("y", None): ("position", "")}
+
+
+def with_drive(placed: Mapping[Place, tuple[str, str]]) -> dict[Place, tuple[str, str]]:
+    """Return the signals with a torque that is called applied as that of the drive, where it was told a torque.
+
+    Where an effort was measured, or where the word stands beside one for a load, the torque comes from outside.
+    """
+    names = {p: (signal, set(words_of(bare(p[0])))) for p, (signal, _) in placed.items()}
+    told = any(signal == "command" and named(p[0]).unit in FORCES for p, (signal, _) in names.items())
+    if not told or any(signal == "effort" and not words & MODELLED for signal, words in names.values()):
+        return dict(placed)
+    own = [p for p, (signal, words) in names.items() if signal == "applied" and words & APPLIED == {"applied"}]
+    kept = {p: what for p, what in placed.items() if not own or what[0] != "effort"}
+    return kept | {p: ("effort", kept[p][1]) for p in own}
+
+
+def with_speeds(placed: Mapping[Place, tuple[str, str]]) -> dict[Place, tuple[str, str]]:
+    """Return the signals with velocities as places, where no place was recorded at all: they are integrated.
+
+    What is asked of a speed is then the reference, and anything else that is asked what the drive is told.
+    """
+    if any(signal in ("position", "load") for signal, _ in placed.values()):
+        return dict(placed)
+    several = len({axis for signal, axis in placed.values() if signal == "velocity"}) > 1
+    asked = any(signal == ASKED_SPEED for signal, _ in placed.values())
+    out = {}
+    for p, (signal, axis) in placed.items():
+        if signal == "velocity":
+            out[p] = "position", axis
+        elif signal == ASKED_SPEED:
+            out[p] = "reference", axis or (EVERY if several else "")
+        else:
+            told = asked and signal == "reference" and set(words_of(bare(p[0]))) & TOLD
+            out[p] = "command" if told else signal, axis
+    return out
+
+
+def with_loads(placed: Mapping[Place, tuple[str, str]]) -> dict[Place, tuple[str, str]]:
+    """Return the signals with the one place of an axis that no drive moves as that of its load, beside those it moves.
+
+    Where only trackers and scales were recorded, theirs are the places.
+    """
+    out = dict(placed)
+    if all(signal != "position" for signal, _ in placed.values()):
+        return {p: ("position" if signal == "load" else signal, axis) for p, (signal, axis) in placed.items()}
+    for axis in {axis for _, axis in placed.values()}:
+        places = [p for p, found in placed.items() if found == ("position", axis)]
+        driven = [p for p in places if set(words_of(bare(p[0]))) & DRIVING]
+        others = [p for p in places if p not in driven]
+        if driven and len(others) == 1 and ("load", axis) not in placed.values():
+            out[others[0]] = "load", axis
+    return out
+
+
+def together(placed: Mapping[Place, tuple[str, str]]) -> tuple[dict[str, dict[str, Place]], list[str]]:
+    """Return axis -> signal -> column, of axes with a position, and the columns that found no axis.
+
+    A column whose name has no axis of its own, or another one than every position, belongs to the only axis there is,
+    or to the one axis whose name ends in the same number. Of two columns for one signal the one that was measured, in
+    the table of the position, comes first.
+    """
+    groups: dict[str, dict[str, Place]] = {}
+    for place, (signal, axis) in sorted(placed.items(), key=lambda item: _rank(item[0], "")):
+        if signal == "position":
+            groups.setdefault(axis, {}).setdefault(signal, place)
+    tables = {table_of(signals["position"][0]) for signals in groups.values()}
+    table = tables.pop() if len(tables) == 1 else ""
+    left = []
+    for place, (signal, axis) in sorted(placed.items(), key=lambda item: _rank(item[0], table)):
+        if axis == EVERY:
+            for signals in groups.values():
+                signals.setdefault(signal, place)
+            continue
+        home = axis if axis in groups else _home(axis, groups)
+        if signal not in SIGNALS or home is None or groups[home].setdefault(signal, place) != place:
+            left.append(place[0])
+    return groups, list(dict.fromkeys(left))
+
+
+def _rank(place: Place, table: str) -> tuple[bool, bool, int, bool]:
+    """Return what orders columns for one signal, the least first: in the table, measured, not made of another, and of
+    what is asked for a place.
+    """
+    words = set(words_of(bare(place[0])))
+    made = bool(words & DERIVED) + 2 * bool(words & MODELLED)
+    vague = bool(words & ASKED) and not words & (POSITION | VELOCITY)
+    return bool(table) and table_of(place[0]) != table, not words & MEASURED, made, vague
+
+
+def _home(axis: str, groups: Mapping[str, Any]) -> str | None:
+    """Return the axis that a signal of another name belongs to; None where there is none, or more than one."""
+    if len(groups) == 1:
+        return next(iter(groups))
+    words = set(axis.split("_"))
+    fits = [x for x in groups if (axis and x and (words <= set(x.split("_")) or set(x.split("_")) <= words))]
+    number = re.search(r"\d+$", axis)
+    fits = fits or [x for x in groups if number and re.search(r"(?<!\d)" + number[0] + "$", x)]
+    return fits[0] if len(fits) == 1 else None
+
+
+def moves(x: Array) -> bool:
+    """Return whether a column, or a matrix with a row for each sample, holds more than one value."""
+    return x.ndim in (1, 2) and len(x) >= SAMPLES and float(np.ptp(x)) > 0.0
+
+
+def values_of(place: Place, tables: Tables) -> Array:
+    """Return the numbers of a column or of an entry of it, without those that are not finite."""
+    x = tables[place[0]] if place[1] is None else tables[place[0]][:, place[1]]
+    return np.asarray(x[np.isfinite(x)])

@@ -1,0 +1,35 @@
+"""What a column is by what stands beside it."""
+
+import numpy as np
+import pytest
+from sher3_machines.drafting.roles import placed, together
+
+T = np.arange(0.0, 4.0, 0.002)
+
+
+def signals_of(*names):
+    """Return axis -> signal -> column of columns that all move."""
+    groups, _ = together(placed({name: np.sin((i + 1.0) * T) for i, name in enumerate(names)}, None, []))
+    return {axis: {signal: place[0] for signal, place in found.items()} for axis, found in groups.items()}
+
+
+@pytest.mark.parametrize("load", ["joint_position", "Output Angle"])
+def test_of_several_encoders_the_one_that_no_drive_moves_is_that_of_the_load(load):
+    (found,) = signals_of("motor_abs_position", "motor_inc_position", load).values()
+    assert found == {"position": "motor_abs_position", "load": load}
+
+
+def test_terms_of_a_model_are_no_effort_where_a_torque_was_applied():
+    (found,) = signals_of("angle [deg]", "Gravity Torque [Nm]", "Target Torque [Nm]", "Applied Torque [Nm]").values()
+    assert found == {"position": "angle [deg]", "command": "Target Torque [Nm]", "effort": "Applied Torque [Nm]"}
+
+
+def test_a_friction_that_alone_was_measured_is_an_effort():
+    (found,) = signals_of("angle [deg]", "Friction Torque [Nm]").values()
+    assert found["effort"] == "Friction Torque [Nm]"
+
+
+@pytest.mark.parametrize("beside", [("drive torque [Nm]",), ()])
+def test_a_torque_that_is_applied_beside_a_measured_one_comes_from_outside(beside):
+    (found,) = signals_of("angle [deg]", "Applied Torque [Nm]", *beside).values()
+    assert found["applied"] == "Applied Torque [Nm]"
