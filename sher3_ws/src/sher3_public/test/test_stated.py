@@ -2,11 +2,10 @@
 
 import re
 
-import mujoco
 import numpy as np
 import pytest
 import sher3.gap as gap
-from drawn_arms import drawn_xml, logged
+from drawn_arms import asked, drawn_xml, logged
 
 SEED, LATE = 704, 5
 XML = drawn_xml(np.random.default_rng(SEED))
@@ -37,12 +36,22 @@ def test_a_delay_that_no_model_states(log):
     assert healthy(XML, log, early, delay=LATE * 0.001)
 
 
-def test_servos_whose_law_is_in_the_firmware(log):
-    """A model with motors, as people have it, and the gains that the drives were given."""
-    model = mujoco.MjModel.from_xml_string(XML)
-    motors = re.sub(r'<position joint="(\w+)" [^>]*/>', r'<motor joint="\1"/>', XML)
-    laws = {model.joint(i).name: tuple(-model.actuator_biasprm[i][1:3]) for i in range(model.nu)}
-    assert healthy(motors, log, log.ctrl, servo=laws)
+MOTORS = re.sub(r'<position joint="(\w+)" [^>]*/>', r'<motor joint="\1"/>', XML)
+"""The same arm with motors, as people have it."""
+LAWS = {name: (300.0 * 0.5**i, 15.0 * 0.5**i) for i, name in enumerate(("turn", "shoulder", "elbow"))}
+"""Gains of the firmware that drives its motors in `logged`: of the place, and of the speed."""
+
+
+@pytest.fixture(scope="module")
+def firmware():
+    """A log of motors, and the places (n, 3) that their firmware was asked for."""
+    log = logged(MOTORS, SEED)
+    return log, asked(np.random.default_rng(SEED), log.time, len(LAWS))
+
+
+def test_servos_whose_law_is_in_the_firmware(firmware):
+    log, places = firmware
+    assert healthy(MOTORS, log, places, servo=LAWS)
 
 
 @pytest.mark.parametrize(
@@ -77,11 +86,9 @@ def test_a_delay_of_a_table(log):
     assert gap.diagnose(XML, {**table(log), "ctrl": early}, delay=LATE * 0.001).status == "no_gap"
 
 
-def test_the_gains_of_servos_of_a_table(log):
-    model = mujoco.MjModel.from_xml_string(XML)
-    motors = re.sub(r'<position joint="(\w+)" [^>]*/>', r'<motor joint="\1"/>', XML)
-    laws = {model.joint(i).name: tuple(-model.actuator_biasprm[i][1:3]) for i in range(model.nu)}
-    assert gap.diagnose(motors, table(log), servo=laws).status == "no_gap"
+def test_the_gains_of_servos_of_a_table(firmware):
+    log, places = firmware
+    assert gap.diagnose(MOTORS, {**table(log), "ctrl": places}, servo=LAWS).status == "no_gap"
 
 
 @pytest.mark.parametrize(

@@ -7,12 +7,10 @@ from collections.abc import Sequence
 import numpy as np
 from sher3_diagnosis.channel import Array, Channel, Floors, Residual, Residuals
 from sher3_diagnosis.thresholds import EATEN
-from sher3_effects.operators import second_difference
 
 from sher3_chain.axes.view import AxisView
 from sher3_chain.floors.foreseen import foreseen
-from sher3_chain.floors.innovation import NOISE_SAMPLES, NOTHING, UNIFORM, chain_floors, plain_innovation
-from sher3_chain.readings.signals import AxisSignals
+from sher3_chain.floors.innovation import NOTHING, UNIFORM, chain_floors, plain_innovation, white_behind
 
 
 def floors_of(records: Sequence[AxisView], found: Sequence[Residuals], repeats: bool) -> list[Floors]:
@@ -42,18 +40,11 @@ def resolution_floors(view: AxisView, least: float = 0.0) -> Floors:
     """
     run, axis = view.run, view.described
     count = max(axis.encoder_resolution, least) / UNIFORM
-    noise = np.random.default_rng(0).normal(size=(max(run.ticks, NOISE_SAMPLES), 1))
-    bend = second_difference(noise, run.period)
-    effort = axis.effort_resolution / UNIFORM * _inside(run, noise)
-    inertia = view.mass * count * _inside(run, bend)
+    noise, bend = white_behind(run)
+    effort = axis.effort_resolution / UNIFORM * noise
+    inertia = view.mass * count * bend
     force = count if axis.servo else max(float(np.hypot(effort, inertia)), NOTHING)
     return {
         Channel("motor_mechanics", axis.name): np.array([max(force, NOTHING)]),
         Channel("transmission", axis.name): np.array([np.sqrt(2.0) * count]),
     }
-
-
-def _inside(run: AxisSignals, noise: Array) -> float:
-    """Return the standard deviation of noise (n, 1) behind the filter of a run, without the ends that it spoils."""
-    end = min(int(run.edge), len(noise) // 4)
-    return float(run.filtered(noise)[end : len(noise) - end].std())

@@ -10,6 +10,7 @@ import numpy as np
 from sher3_diagnosis.channel import Array, Channel, Floors, Residual, Residuals
 from sher3_diagnosis.filter import low_pass
 from sher3_diagnosis.localise.floors import noise_of_bends, repeat_floors
+from sher3_effects.operators import second_difference
 
 from sher3_chain.chain.view import ChainView
 from sher3_chain.readings.signals import AxisSignals
@@ -67,6 +68,17 @@ def _of_clock(ticks: int, stride: int, period: float, bandwidth: float) -> float
     noise = np.random.default_rng(0).normal(size=(max(ticks, NOISE_SAMPLES, ON_GRID * stride), 1))
     seen = low_pass(noise, period, bandwidth)[::stride]
     return float(innovation(Residual(seen, np.ones(len(seen), dtype=bool)))[0] / seen.std())
+
+
+def white_behind(run: AxisSignals) -> tuple[float, float]:
+    """Return the standard deviation of white noise behind a run's filter, and that of its second derivative, 1/s^2.
+
+    Both are those of noise of a standard deviation of one, without the ends, where the filter spoils a difference.
+    """
+    noise = np.random.default_rng(0).normal(size=(max(run.ticks, NOISE_SAMPLES), 1))
+    end = min(int(run.edge), len(noise) // 4)
+    seen, bend = (run.filtered(x)[end : len(noise) - end].std() for x in (noise, second_difference(noise, run.period)))
+    return float(seen), float(bend)
 
 
 def innovation(residual: Residual) -> Array:

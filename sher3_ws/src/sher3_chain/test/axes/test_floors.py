@@ -5,7 +5,7 @@ import pytest
 from sher3_chain.axes.evidence import residuals_of
 from sher3_chain.axes.floors import floors_of, resolution_floors
 from sher3_chain.axes.view import AxisView
-from sher3_chain.floors.innovation import innovation
+from sher3_chain.floors.innovation import innovation, white_behind
 from sher3_chain.readings.signals import AxisSignals
 from sher3_diagnosis.channel import Channel, Residual
 from slides import axis_of, columns
@@ -25,6 +25,16 @@ def test_lines_and_rare_steps_are_foreseen():
     line = 3.0 * np.arange(200)
     assert innovation(residual(line)) == pytest.approx([0.0], abs=1e-9)
     assert innovation(residual(line + np.where(np.arange(200) < 100, 0.0, 50.0))) == pytest.approx([0.0], abs=1e-9)
+
+
+def test_noise_makes_as_much_acceleration_as_is_reckoned_of_it():
+    """Behind the filter and away from its ends, which would hold most of it: 10 000 samples at 1 kHz, cut at 40 Hz."""
+    noise = np.random.default_rng(1).normal(size=(10_000, 1))
+    run = AxisSignals("run", "run", 0.001, noise, bandwidth=40.0)
+    ok = run.inner
+    place, bend = white_behind(run)
+    assert run.smooth[run.grid][ok].std() == pytest.approx(place, rel=0.1)
+    assert run.to_grid(run.acceleration)[ok].std() == pytest.approx(bend, rel=0.1)
 
 
 def servo(position, reference, count=0.012):

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 from sher3_diagnosis.channel import Array, Channel, Floors, Residuals
 
-from sher3_chain.floors.innovation import NOISE_SAMPLES, NOTHING, UNIFORM, chain_floors, plain_innovation
+from sher3_chain.floors.innovation import NOTHING, UNIFORM, chain_floors, plain_innovation, white_behind
 from sher3_chain.manipulator.description import PER_RUN
 from sher3_chain.manipulator.view import MotionView
 from sher3_chain.readings.noise import noise_of
@@ -43,8 +43,7 @@ def coarseness(view: MotionView) -> Array:
         max(noise_of(run.motor[:, j], run.period), joint.encoder_resolution / UNIFORM)
         for j, joint in enumerate(view.joints)
     ]
-    white = np.random.default_rng(0).normal(size=(max(run.ticks, NOISE_SAMPLES), 1))
-    bend = float(run.filtered(np.diff(white, 2, axis=0)).std()) / run.period**2
+    _, bend = white_behind(run)
     rows = np.linspace(0, len(view.position) - 1, min(POSTURES, len(view.position))).astype(int)
     squares = (view.inertia_matrix(rows) * np.array(noise)) ** 2
     return np.asarray(bend * view.shares * np.sqrt(np.mean(squares, axis=0).sum(axis=1)))
