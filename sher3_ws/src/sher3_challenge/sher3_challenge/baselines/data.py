@@ -66,12 +66,7 @@ def _left(evidence: SherEvidence, found: Fit, channel: Channel) -> tuple[list[Ar
     for run, target in enumerate(evidence.data.target):
         if channel not in target:
             continue
-        rest: Array = target[channel]
-        if channel in term.fixed[run]:
-            rest = rest - term.fixed[run][channel]
-        if channel in term.columns[run]:
-            x = term.columns[run][channel]
-            rest = rest - x @ found.of(0)[: x.shape[1]]
+        rest: Array = target[channel] - term.adds(run, channel, found.of(0))
         gain += float(target[channel] @ target[channel] - rest @ rest)
         fitted.append(rest[:, None])
     return fitted, gain

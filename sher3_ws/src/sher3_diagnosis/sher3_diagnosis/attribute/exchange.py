@@ -23,7 +23,7 @@ def exchanged(candidates: Candidates, found: Attribution) -> Fit:
         before = best
         for i in found.causes:
             term = best.terms[i]
-            others = [t for j, t in enumerate(best.terms) if j != i]
+            others = best.others(i)
             effects = [term.effect, *(f.terms[-1].effect for f in found.rivals[i] if f.terms[-1].site == term.site)]
             for effect in effects:
                 trial = candidates.best(effect, term.site, others)

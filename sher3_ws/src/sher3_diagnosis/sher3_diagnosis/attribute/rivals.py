@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from sher3_diagnosis.attribute.candidates import Candidates
+from sher3_diagnosis.attribute.ties import first_of_least
 from sher3_diagnosis.channel import AT_TIP, Array
 from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.fit.fitting import Fit, Term, fit
@@ -98,7 +99,25 @@ class Attribution:
 
 def without_term(evidence: Evidence, current: Fit, index: int) -> Fit:
     """Fit again without one term."""
-    return fit(evidence.data, [t for j, t in enumerate(current.terms) if j != index])
+    return fit(evidence.data, current.others(index))
+
+
+def pruned_by(evidence: Evidence, current: Fit, worth: Callable[[Fit, int, Fit], bool]) -> Fit:
+    """Return a fit without the causes that are worth nothing, the least missed first; at least one cause is kept.
+
+    Args:
+        evidence: that the fit is of.
+        current: to be pruned; among causes missed equally the last chosen goes first.
+        worth: whether a cause is to stay, given the fit with it, its index and the fit without it.
+    """
+    first = len(evidence.nuisance)
+    while len(current.terms) > first + 1:
+        reduced = {i: without_term(evidence, current, i) for i in range(first, len(current.terms))}
+        least = first_of_least({i: reduced[i].total for i in sorted(reduced, reverse=True)})
+        if worth(current, least, reduced[least]):
+            break
+        current = reduced[least]
+    return current
 
 
 def with_rivals(candidates: Candidates, current: Fit) -> Attribution:
@@ -108,7 +127,7 @@ def with_rivals(candidates: Candidates, current: Fit) -> Attribution:
     explained: list[float] = []
     ranking: list[tuple[Fit, ...]] = []
     for i, term in enumerate(current.terms):
-        others = [t for j, t in enumerate(current.terms) if j != i]
+        others = current.others(i)
         worth = fit(evidence.data, others).total - current.total
         ranked = candidates.search(term.channels, others) if i >= len(evidence.nuisance) else []
         ranking.append(tuple(ranked[:RANKED]))

@@ -106,20 +106,14 @@ def _explained(normal: Array, right: Array, coefficients: Array) -> float:
 def steadiness_of(evidence: Evidence, fit: Fit, index: int) -> Steadiness:
     """Return what every run determines of one cause of a fit."""
     data, term = evidence.data, fit.terms[index]
-    offsets = np.cumsum([0, *(t.width for t in fit.terms)])
     normal = np.zeros((len(data.target), term.width, term.width))
     right = np.zeros((len(data.target), term.width))
     for r in range(len(data.target)):
-        for channel, x in term.columns[r].items():
+        for channel in term.columns[r]:
             left = data.target[r][channel].copy()
             for j, other in enumerate(fit.terms):
-                if channel in other.fixed[r]:
-                    left -= other.fixed[r][channel]
-                if j != index and channel in other.columns[r]:
-                    z = other.columns[r][channel]
-                    left -= z @ fit.coefficients[offsets[j] : offsets[j] + z.shape[1]]
-            wide = np.zeros((len(x), term.width))
-            wide[:, : x.shape[1]] = x
+                left -= other.fixed[r].get(channel, 0.0) if j == index else other.adds(r, channel, fit.of(j))
+            wide = term.wide(r, channel, len(left))
             normal[r] += wide.T @ wide
             right[r] += wide.T @ left
     return Steadiness(tuple(evidence.excitations), normal, right)

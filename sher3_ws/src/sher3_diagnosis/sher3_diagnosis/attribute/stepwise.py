@@ -11,11 +11,10 @@ from collections.abc import Sequence
 from sher3_common.progress import Say
 
 from sher3_diagnosis.attribute.candidates import Candidates, complexity
-from sher3_diagnosis.attribute.rivals import Attribution, without_term
+from sher3_diagnosis.attribute.rivals import Attribution, pruned_by, without_term
 from sher3_diagnosis.attribute.search import Left
 from sher3_diagnosis.attribute.ties import first_of_least
 from sher3_diagnosis.effect import Effect
-from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.fit.fitting import Fit, Term, fit
 from sher3_diagnosis.thresholds import NEEDED, PARSIMONY, PRICE
 
@@ -61,20 +60,13 @@ def grow(candidates: Candidates, effects: Sequence[Effect], current: Fit) -> Fit
             break
         current = trials[cheapest]
         left.pop(cheapest)
-    return _prune(evidence, current, base)
+
+    def worth(now: Fit, i: int, without: Fit) -> bool:
+        return without.total - now.total > _needed(now.terms[i], base, now)
+
+    return pruned_by(evidence, current, worth)
 
 
 def _needed(term: Term, base: float, current: Fit) -> float:
     """Held-out loss that a term must be worth."""
     return NEEDED * complexity(term) + PARSIMONY * (base - current.total)
-
-
-def _prune(evidence: Evidence, current: Fit, base: float) -> Fit:
-    first = len(evidence.nuisance)
-    while len(current.terms) > first + 1:
-        reduced = {i: without_term(evidence, current, i) for i in range(first, len(current.terms))}
-        least = first_of_least({i: reduced[i].total for i in sorted(reduced, reverse=True)})
-        if reduced[least].total - current.total > _needed(current.terms[least], base, current):
-            break
-        current = reduced[least]
-    return current

@@ -10,7 +10,7 @@ import math
 from collections.abc import Callable, Collection, Sequence
 
 from sher3_diagnosis.attribute.candidates import Candidates, complexity
-from sher3_diagnosis.attribute.rivals import without_term
+from sher3_diagnosis.attribute.rivals import pruned_by, without_term
 from sher3_diagnosis.attribute.ties import TIE, first_of_least
 from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.effect import Effect
@@ -105,13 +105,10 @@ def pruned(evidence: Evidence, current: Fit, left_over: Left, relative: bool) ->
         relative: whether an ordinary cause may be worth little beside what all explain, if it is much of what they
             leave.
     """
-    first = len(evidence.nuisance)
-    while len(current.terms) > first + 1:
-        reduced = {i: without_term(evidence, current, i) for i in range(first, len(current.terms))}
-        i = first_of_least({j: reduced[j].total for j in sorted(reduced, reverse=True)})
-        plain = relative and is_plain(evidence, current.terms[i])
-        price = NEEDED * complexity(current.terms[i]) + law_error(evidence, current, plain)
-        if reduced[i].total - current.total > price or set(left_over(reduced[i])) - set(left_over(current)):
-            return current
-        current = reduced[i]
-    return current
+
+    def worth(now: Fit, i: int, without: Fit) -> bool:
+        plain = relative and is_plain(evidence, now.terms[i])
+        price = NEEDED * complexity(now.terms[i]) + law_error(evidence, now, plain)
+        return without.total - now.total > price or bool(set(left_over(without)) - set(left_over(now)))
+
+    return pruned_by(evidence, current, worth)

@@ -47,6 +47,10 @@ class Fit:
         """Leave-one-run-out coefficients of one term, (runs, p)."""
         return self.loro_coefficients[:, self._columns(index)]
 
+    def others(self, index: int) -> list[Term]:
+        """Return the terms without one of them."""
+        return [t for i, t in enumerate(self.terms) if i != index]
+
     @property
     def total(self) -> float:
         """Held-out loss over all runs and channels."""

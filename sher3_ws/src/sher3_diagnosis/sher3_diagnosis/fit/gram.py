@@ -69,12 +69,7 @@ def _block(term: Term, run: int, channel: Channel, samples: int) -> Array | None
     x, f = term.columns[run].get(channel), term.fixed[run].get(channel)
     if x is None and f is None:
         return None
-    out = np.zeros((samples, term.width + 1))
-    if x is not None:
-        out[:, : x.shape[1]] = x
-    if f is not None:
-        out[:, -1] = f
-    return out
+    return np.column_stack([term.wide(run, channel, samples), np.zeros(samples) if f is None else f])
 
 
 def _with_target(data: Whitened, term: Term, channel: Channel) -> Array:

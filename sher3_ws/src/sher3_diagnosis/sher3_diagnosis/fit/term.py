@@ -8,6 +8,8 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
+import numpy as np
+
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.effect import Effect, Shape, Signature
 from sher3_diagnosis.fit.whitened import Whitened
@@ -52,6 +54,22 @@ class Term:
             {c: len(v) for part in (x, f) for c, v in part.items()}
             for x, f in zip(self.columns, self.fixed, strict=True)
         ]
+
+    def adds(self, run: int, channel: Channel, coefficients: Array) -> Array | float:
+        """Return what the term adds to a channel of a run with coefficients (p,), whitened (N,); 0 where it shows not.
+
+        A run may have fewer columns than others: the coefficients of those that it lacks are of no matter there.
+        """
+        x, fixed = self.columns[run].get(channel), self.fixed[run].get(channel, 0.0)
+        return fixed if x is None else fixed + x @ coefficients[: x.shape[1]]
+
+    def wide(self, run: int, channel: Channel, samples: int) -> Array:
+        """Return the columns of a run with zeros for those that it lacks, (samples, width)."""
+        out = np.zeros((samples, self.width))
+        x = self.columns[run].get(channel)
+        if x is not None:
+            out[:, : x.shape[1]] = x
+        return out
 
 
 def make_term(data: Whitened, effect: Effect, site: str, shape: Shape) -> Term:

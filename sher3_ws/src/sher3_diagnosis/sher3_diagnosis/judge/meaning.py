@@ -197,7 +197,7 @@ def _plainer(candidates: Candidates, attribution: Attribution, index: int) -> At
     Two numbers that change places have no size each, and one of them alone has one.
     """
     terms = attribution.fit.terms
-    found = candidates.best_plainer(terms[index], [t for i, t in enumerate(terms) if i != index])
+    found = candidates.best_plainer(terms[index], attribution.fit.others(index))
     if found is None:
         return None
     return attribution.arranged(candidates.evidence, range(len(terms)), {index: found.terms[-1]})
@@ -210,7 +210,7 @@ def _simpler(candidates: Candidates, attribution: Attribution, index: int) -> At
     """
     found, evidence = attribution.fit, candidates.evidence
     term = found.terms[index]
-    others = [t for i, t in enumerate(found.terms) if i != index]
+    others = found.others(index)
     beside = {t.effect.id for t in others if t.site == term.site}
     plain = [e for e in candidates.effects if e.id in term.effect.extends and e.id not in beside]
     trials = [f for e in plain if (f := candidates.best(e, term.site, others)) is not None]

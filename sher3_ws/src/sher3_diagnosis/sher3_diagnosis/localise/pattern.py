@@ -68,19 +68,9 @@ def pattern_of(evidence: Evidence, fit: Fit, index: int) -> Pattern:
 def _parts(evidence: Evidence, fit: Fit, index: int, run: int, channel: Channel) -> tuple[Array, Array]:
     """What the cause adds to a channel of a held-out run, and the residual rid of the other causes, whitened (N,)."""
     target = evidence.data.target[run][channel]
-    added, others = np.zeros_like(target), np.zeros_like(target)
-    for j, term in enumerate(fit.terms):
-        part = np.zeros_like(target)
-        if channel in term.fixed[run]:
-            part += term.fixed[run][channel]
-        if channel in term.columns[run]:
-            x = term.columns[run][channel]
-            part += x @ fit.loro_of(j)[run][: x.shape[1]]
-        if j == index:
-            added = part
-        else:
-            others += part
-    return added, target - others
+    parts = [term.adds(run, channel, fit.loro_of(j)[run]) for j, term in enumerate(fit.terms)]
+    added = np.broadcast_to(parts.pop(index), target.shape)
+    return added, target - sum(parts)
 
 
 def _by_sample(

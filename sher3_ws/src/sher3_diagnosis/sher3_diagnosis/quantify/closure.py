@@ -22,18 +22,13 @@ def residual_after(evidence: Evidence, fit: Fit, channel: Channel) -> dict[int, 
     runs.
     """
     out: dict[int, Array] = {}
-    data = evidence.data
-    for r, targets in enumerate(data.target):
+    own = [(term, fit.loro_of(i)) for i, term in enumerate(fit.terms) if channel in term.channels]
+    for r, targets in enumerate(evidence.data.target):
         if channel not in targets:
             continue
-        left, start = targets[channel].copy(), 0
-        for term in fit.terms:
-            if channel in term.fixed[r]:
-                left -= term.fixed[r][channel]
-            if channel in term.columns[r]:
-                x = term.columns[r][channel]
-                left -= x @ fit.loro_coefficients[r][start : start + x.shape[1]]
-            start += term.width
+        left = targets[channel].copy()
+        for term, coefficients in own:
+            left -= term.adds(r, channel, coefficients[r])
         floor = evidence.floors[r][channel]
         out[r] = left.reshape(-1, len(floor)) * floor
     return out

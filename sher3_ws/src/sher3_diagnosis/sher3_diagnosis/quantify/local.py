@@ -99,9 +99,8 @@ def local(evidence: Evidence, fit: Fit, index: int) -> Local:
         for channel in sorted(channels & data.target[r].keys()):
             left, columns = data.target[r][channel].copy(), []
             for i in [*order, index]:
-                x = _columns(fit.terms[i], r, channel, len(left))
-                left -= x @ fit.of(i) + fit.terms[i].fixed[r].get(channel, 0.0)
-                columns.append(x)
+                left -= fit.terms[i].adds(r, channel, fit.of(i))
+                columns.append(fit.terms[i].wide(r, channel, len(left)))
             columns += [s[r].get(channel, np.zeros(len(left)))[:, None] for s in slopes.values()]
             jacobian = np.hstack(columns)
             information += jacobian.T @ jacobian
@@ -130,29 +129,17 @@ def _continuous(term: Term) -> list[str]:
     return [n for n in names if term.shape.get(n) and np.isfinite(term.shape[n])]
 
 
-def _columns(term: Term, run: int, channel: Channel, samples: int) -> Array:
-    out = np.zeros((samples, term.width))
-    x = term.columns[run].get(channel)
-    if x is not None:
-        out[:, : x.shape[1]] = x
-    return out
-
-
 def _slope(evidence: Evidence, fit: Fit, index: int, name: str) -> list[dict[Channel, Array]]:
     """Derivative of what a term predicts with respect to a shape parameter, per run and channel."""
     term = fit.terms[index]
     step = STEP * term.shape[name]
     shapes = [{**term.shape, name: term.shape[name] + by} for by in (-step, step)]
     low, high = (make_term(evidence.data, term.effect, term.site, shape) for shape in shapes)
-    out: list[dict[Channel, Array]] = []
-    for r in range(len(evidence.data.target)):
-        run = {}
-        for channel in term.channels & evidence.data.target[r].keys():
-            n = len(evidence.data.target[r][channel])
-            ends = [_columns(t, r, channel, n) @ fit.of(index) + t.fixed[r].get(channel, 0.0) for t in (low, high)]
-            run[channel] = (ends[1] - ends[0]) / (2.0 * step)
-        out.append(run)
-    return out
+    best = fit.of(index)
+    return [
+        {c: np.asarray(high.adds(r, c, best) - low.adds(r, c, best)) / (2.0 * step) for c in run | high.samples[r]}
+        for r, run in enumerate(low.samples)
+    ]
 
 
 def _pieces(evidence: Evidence, run: int, channel: Channel) -> Array:

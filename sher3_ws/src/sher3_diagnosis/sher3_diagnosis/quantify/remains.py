@@ -17,15 +17,14 @@ def remains(evidence: Evidence, fit: Fit, index: int, channel: Channel) -> dict[
     """
     term, out = fit.terms[index], residual_after(evidence, fit, channel)
     for r, left in out.items():
-        columns = term.columns[r].get(channel)
-        if columns is None:
+        if channel not in term.columns[r]:
             continue
         own = fit.loro_of(index)[r]
         level = term.effect.held(evidence.views[r], term.site, term.shape, own)
         if level is None:
             continue
         level = level[evidence.data.residuals[r][channel].ok][:, None]
-        whole = left + (columns @ own[: columns.shape[1]]).reshape(left.shape) * evidence.floors[r][channel]
+        whole = left + np.reshape(term.adds(r, channel, own), left.shape) * evidence.floors[r][channel]
         beyond = np.sign(whole) * np.maximum(np.abs(whole) - level, 0.0)
         out[r] = np.where(level > 0.0, beyond, left)
     return out

@@ -69,9 +69,6 @@ def added(fit: Fit, index: int, channel: Channel, runs: Mapping[int, Array]) -> 
     """
     term, out = fit.terms[index], []
     for r, like in runs.items():
-        columns, fixed = term.columns[r].get(channel), term.fixed[r].get(channel)
-        adds = np.zeros(like.size) if fixed is None else fixed
-        if columns is not None:
-            adds = adds + columns @ fit.loro_of(index)[r][: columns.shape[1]]
-        out.append(adds.reshape(like.shape))
+        adds = term.adds(r, channel, fit.loro_of(index)[r])
+        out.append(np.broadcast_to(adds, like.size).reshape(like.shape))
     return np.concatenate(out)
