@@ -25,9 +25,9 @@ from sher3_bags import Run, read_case
 from sher3_description import ACTUATORS, Robot
 from sher3_effects import plants
 from sher3_sim import PlantEffect, PlantParameters, contact_wrench, recorded_excitation, simulate, with_effects
-from sher3_sim.axis import AXIS_STATE
+from sher3_sim.kernel.axis import AXIS_STATE
+from sher3_sim.kernel.transmission import follow
 from sher3_sim.replay import axis_loads
-from sher3_sim.transmission import follow
 
 SHARED = Path(os.environ.get("SHER3_SHARED", Path(__file__).resolve().parents[2] / "shared"))
 

@@ -12,7 +12,8 @@ from sher3_common.faces import lazy
 if TYPE_CHECKING:
     from sher3_runtime.clock import Clock as Clock
     from sher3_runtime.clock import SteppedClock as SteppedClock
-    from sher3_runtime.graph import Graph as Graph
+    from sher3_runtime.execution.graph import Graph as Graph
+    from sher3_runtime.execution.spinning import spin as spin
     from sher3_runtime.on_demand import advertise_on_demand as advertise_on_demand
     from sher3_runtime.ports import NODE_OPTIONS as NODE_OPTIONS
     from sher3_runtime.ports import advertise as advertise
@@ -25,13 +26,12 @@ if TYPE_CHECKING:
     from sher3_runtime.ports import subscribe as subscribe
     from sher3_runtime.ports import subscribe_raw as subscribe_raw
     from sher3_runtime.ports import use_clock as use_clock
-    from sher3_runtime.spinning import spin as spin
 
 __getattr__, __dir__ = lazy(
     __name__,
     {
         "clock": ("Clock", "SteppedClock"),
-        "graph": ("Graph",),
+        "execution.graph": ("Graph",),
         "on_demand": ("advertise_on_demand",),
         "ports": (
             "NODE_OPTIONS",
@@ -46,6 +46,6 @@ __getattr__, __dir__ = lazy(
             "subscribe_raw",
             "use_clock",
         ),
-        "spinning": ("spin",),
+        "execution.spinning": ("spin",),
     },
 )

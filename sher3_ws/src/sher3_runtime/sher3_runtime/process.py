@@ -26,8 +26,8 @@ from sher3_common import Sher3Error
 from sher3_runtime.clock import NEVER_NS
 from sher3_runtime.composed.composition import Composition
 from sher3_runtime.composed.ring import Ring
+from sher3_runtime.execution.spinning import spin
 from sher3_runtime.ports import clock_of, ports
-from sher3_runtime.spinning import spin
 
 REALTIME_VARIABLE = "SHER3_REALTIME"
 CORE_VARIABLE = "SHER3_CORE"

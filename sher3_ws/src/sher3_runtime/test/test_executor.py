@@ -10,7 +10,7 @@ from sher3_runtime import NODE_OPTIONS, advertise, clock_of, on_tick, subscribe
 from sher3_runtime.composed import newest
 from sher3_runtime.composed.ring import Ring, share
 from sher3_runtime.domains import own_domain
-from sher3_runtime.executor import QUIET_NS, RawExecutor
+from sher3_runtime.execution.executor import QUIET_NS, RawExecutor
 from sher3_runtime.ports import by_ring
 from std_srvs.srv import Trigger
 
@@ -124,8 +124,8 @@ def test_rare_topics_and_services_are_served_beside_a_stream(node, spin):
 @pytest.mark.parametrize("rings", [0, 1])
 def test_an_emergency_stop_beside_a_ring_wakes_who_has_heard_nothing_for_long(node, spin, monkeypatch, rings):
     """A silent topic waits for the next look at everything, which never comes here; what must be heard does not."""
-    monkeypatch.setattr("sher3_runtime.executor.QUIET_NS", 0)
-    monkeypatch.setattr("sher3_runtime.executor.LOOK_NS", 1 << 60)
+    monkeypatch.setattr("sher3_runtime.execution.executor.QUIET_NS", 0)
+    monkeypatch.setattr("sher3_runtime.execution.executor.LOOK_NS", 1 << 60)
     share([Ring(1 << 18) for _ in range(rings)])
     newest.newest_of_rings.cache_clear()
     try:

@@ -15,14 +15,14 @@ from sher3_description import Robot
 from sher3_description.contract import REFERENCE_TEMPERATURE
 from sher3_kinematics.kernel import KernelParameters, kernel_parameters, tip_pose_into
 
-from sher3_sim import kernel
-from sher3_sim.axis import AXIS_STATE, propagators
 from sher3_sim.effect import PlantEffect, with_effects
 from sher3_sim.errors import InputError
+from sher3_sim.kernel import robot as kernel
+from sher3_sim.kernel.axis import AXIS_STATE, propagators
+from sher3_sim.kernel.tip import quaternion
 from sher3_sim.parameters import PlantParameters
 from sher3_sim.plant import checked
 from sher3_sim.scatter import RunScatter
-from sher3_sim.tip import quaternion
 
 Array = NDArray[np.float64]
 

@@ -12,10 +12,10 @@ from sher3_common.compiled import direct
 from sher3_description import Robot
 from sher3_description.contract import REFERENCE_TEMPERATURE
 
-from sher3_sim import kernel
-from sher3_sim.axis import AXIS_STATE, propagators
 from sher3_sim.effect import PlantEffect, with_effects
 from sher3_sim.errors import InputError
+from sher3_sim.kernel import robot as kernel
+from sher3_sim.kernel.axis import AXIS_STATE, propagators
 from sher3_sim.scatter import RunScatter
 
 Vector = NDArray[np.float64]

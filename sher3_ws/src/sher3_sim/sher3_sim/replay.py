@@ -22,7 +22,7 @@ from sher3_kinematics.kernel import (
 
 from sher3_sim.closed_loop import Array, Excitation, excitation, simulate
 from sher3_sim.effect import PlantEffect
-from sher3_sim.tip import cross
+from sher3_sim.kernel.tip import cross
 
 SMOOTHING = 11
 """Ticks over which a parabola is fitted to the recorded wrench before it acts on the model: the fit removes noise and

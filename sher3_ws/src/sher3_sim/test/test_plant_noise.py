@@ -1,6 +1,6 @@
 import numpy as np
 from numba import njit
-from sher3_sim.noise import normal, uniform
+from sher3_sim.kernel.noise import normal, uniform
 
 
 @njit

@@ -11,9 +11,9 @@ from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 from sher3_description import TOPICS
 from sher3_runtime import environment
+from sher3_runtime.execution.spinning import spin
 from sher3_runtime.ports import NODE_OPTIONS, advertise_raw, clock_of, on_tick, ports
 from sher3_runtime.process import stop_on_signals
-from sher3_runtime.spinning import spin
 
 from sher3_bags.errors import TopicError
 from sher3_bags.playback.replay import DueMessage, Replay

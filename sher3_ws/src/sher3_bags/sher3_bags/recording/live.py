@@ -14,7 +14,7 @@ from sher3_description import Robot
 from sher3_bags.run import RunMetadata
 
 if TYPE_CHECKING:
-    from sher3_runtime.graph import Graph
+    from sher3_runtime.execution.graph import Graph
 
     from sher3_bags.recording.recorder_node import RecorderNode
 

@@ -24,9 +24,9 @@ from sher3_description import TOPICS, Robot, load_robot
 from sher3_runtime import advertise, environment
 from sher3_runtime.codec.messages import message_class
 from sher3_runtime.composed.ring import shared_rings
+from sher3_runtime.execution.spinning import spin
 from sher3_runtime.ports import NODE_OPTIONS, clock_of, find_topic, on_tick, ports, qos_profile, subscribe_raw
 from sher3_runtime.process import stop_on_signals
-from sher3_runtime.spinning import spin
 
 from sher3_bags.errors import BagError
 from sher3_bags.recording.beside import Beside

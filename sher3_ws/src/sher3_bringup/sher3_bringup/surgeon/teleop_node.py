@@ -13,9 +13,9 @@ from sher3_common.operating_state import OperatingState, StateCommand
 from sher3_common.samples import JoySample, TextSample, WrenchSample
 from sher3_common.vectors import Wrench
 from sher3_runtime import environment
+from sher3_runtime.execution.spinning import spin
 from sher3_runtime.ports import NODE_OPTIONS, PERIOD_VARIABLE, advertise, clock_of, on_tick, subscribe
 from sher3_runtime.process import stop_on_signals
-from sher3_runtime.spinning import spin
 
 from sher3_bringup.surgeon.script import Script
 

@@ -10,8 +10,8 @@ from sher3_description.contract import GRAVITY
 from sher3_diagnosis.channel import Array
 from sher3_diagnosis.effect import Best, Shape, Signature
 from sher3_sim.effect import PlantEffect, parameter
+from sher3_sim.kernel.tip import CONTACT_FORCE
 from sher3_sim.parameters import PlantParameters
-from sher3_sim.tip import CONTACT_FORCE
 
 from sher3_effects.operators import play
 from sher3_effects.page import TIP_POSE, Page

@@ -23,9 +23,9 @@ from sher3_common.progress import Say, silent
 from sher3_common.samples import JointSample, TextSample, WrenchSample
 from sher3_description import Robot
 from sher3_runtime import environment
+from sher3_runtime.execution.spinning import spin
 from sher3_runtime.ports import NODE_OPTIONS, PERIOD_VARIABLE, advertise, on_tick, subscribe
 from sher3_runtime.process import stop_on_signals
-from sher3_runtime.spinning import spin
 
 from sher3_gap.case.ticks import LONGEST_HOLE, LOST_SHARE
 from sher3_gap.excitation import Excitation

@@ -15,9 +15,9 @@ from rclpy.signals import SignalHandlerOptions
 from sher3_common.samples import DiagnosticSample
 from sher3_description import Robot
 from sher3_runtime import environment
+from sher3_runtime.execution.spinning import spin
 from sher3_runtime.ports import NODE_OPTIONS, PERIOD_VARIABLE, advertise, on_tick, subscribe
 from sher3_runtime.process import stop_on_signals
-from sher3_runtime.spinning import spin
 from sher3_sim import PlantEffect
 
 from sher3_gap.live.monitor import TOPICS, Monitor, StageStatus

@@ -15,8 +15,8 @@ from sher3_common.samples import DiagnosticSample, TextSample
 from sher3_description import TOPICS
 from sher3_faults.requests import FaultRequest
 from sher3_runtime import environment
+from sher3_runtime.execution.spinning import make_executor
 from sher3_runtime.ports import NODE_OPTIONS, advertise, ports, subscribe
-from sher3_runtime.spinning import make_executor
 
 PATIENCE = 5.0
 """Longest wait for the robot and for its answer, s."""

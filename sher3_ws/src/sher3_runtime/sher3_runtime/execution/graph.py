@@ -23,10 +23,10 @@ from sher3_runtime import environment
 from sher3_runtime.clock import SteppedClock, set_timer_slack
 from sher3_runtime.composed.composition import Composition
 from sher3_runtime.domains import own_domain
-from sher3_runtime.executor import RawExecutor
+from sher3_runtime.execution.executor import RawExecutor
+from sher3_runtime.execution.spinning import close
 from sher3_runtime.ports import NODE_OPTIONS, advertise, ports, raw_mode, subscribe, use_clock, use_post
 from sher3_runtime.post import Post
-from sher3_runtime.spinning import close
 from sher3_runtime.tick import Tick
 
 N = TypeVar("N", bound=Node)

@@ -14,7 +14,7 @@ from sher3_common.waiting import let_others_go_on
 
 from sher3_runtime.clock import set_timer_slack
 from sher3_runtime.composed.relief import Relief
-from sher3_runtime.executor import RawExecutor
+from sher3_runtime.execution.executor import RawExecutor
 from sher3_runtime.ports import STATISTICS_VARIABLE, TRACE_VARIABLE, ports, raw_mode
 from sher3_runtime.statistics.baseline import BaselineExecutor
 from sher3_runtime.statistics.report import report_statistics

@@ -13,7 +13,7 @@ from sher3_kinematics.kernel.delta import leg_vectors
 from sher3_kinematics.tip_deflection import ArmCompliance
 
 from sher3_sim.found import TIP, add_body
-from sher3_sim.looking import look_at_tip
+from sher3_sim.kernel.quantities import look_at_tip
 
 Array = np.ndarray
 _ARM = ArmCompliance()

@@ -13,8 +13,8 @@ import numpy as np
 from sher3_common.compiled import compiled
 from sher3_common.laws import swing_map
 
-from sher3_sim.axis import TWO_PI, bristle_step
 from sher3_sim.found import POSITION, TRANSMISSION, VELOCITY, total
+from sher3_sim.kernel.axis import TWO_PI, bristle_step
 
 
 @compiled

@@ -12,12 +12,12 @@ from sher3_description.contract import GRAVITY, REFERENCE_TEMPERATURE
 from sher3_kinematics.arrays import unpack
 from sher3_kinematics.kernel import KernelParameters, gravity_load_into, tip_jacobian_into
 
-from sher3_sim.axis import advance, drive_force, send
 from sher3_sim.found import BODY_QUANTITIES, BODY_TERMS, SENSOR, add_body
-from sher3_sim.looking import asked, begin_at_rest, look_at_axes, sent
-from sher3_sim.noise import DISTURBANCE, DROP, EFFORT, FORCE, JITTER, TRACKER, normal, uniform
-from sher3_sim.tip import cross, quaternion, true_tip
-from sher3_sim.transmission import encode_load, felt, place, to_count, transmit
+from sher3_sim.kernel.axis import advance, drive_force, send
+from sher3_sim.kernel.noise import DISTURBANCE, DROP, EFFORT, FORCE, JITTER, TRACKER, normal, uniform
+from sher3_sim.kernel.quantities import asked, begin_at_rest, look_at_axes, sent
+from sher3_sim.kernel.tip import cross, quaternion, true_tip
+from sher3_sim.kernel.transmission import encode_load, felt, place, to_count, transmit
 
 Array = np.ndarray
 
