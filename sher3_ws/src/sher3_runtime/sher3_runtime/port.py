@@ -14,9 +14,11 @@ from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPo
 from rclpy.utilities import get_default_context
 from sher3_common import Sher3Error
 from sher3_common.namespace import graph_namespace
+from sher3_description import ACTUATORS
 from sher3_description.topics import TOPICS, Qos, Topic
 
 from sher3_runtime.clock import Clock
+from sher3_runtime.codec.cdr import codec
 from sher3_runtime.composed.composition import Composition, composing
 from sher3_runtime.composed.turn import Turn
 from sher3_runtime.post import Box, Post
@@ -161,6 +163,11 @@ class Ports:
             return self.post.sender(topic.name, topic.qos.durability == "transient_local")
         # The handle's own method: rclpy's wrapper would enter the handle's context at each call.
         return publisher.handle.publish_raw
+
+    def decoder(self, topic: Topic) -> Callable[[bytes], Any]:
+        """Return what makes samples of the bytes of a topic."""
+        decode = codec(topic.type, topic.frame, ACTUATORS).decode
+        return decode if self.post is None else self.post.decoder(topic.name, decode)
 
     def listeners(self, name: str) -> Callable[[], int]:
         """Return what tells how many subscriptions a topic has that this node publishes."""

@@ -81,7 +81,7 @@ def subscribe(
             topic, port.turn, receive, profile.depth, lambda: port.leave(node, name, subscription)
         )
     if raw:
-        decode, garbage = codec(topic.type, topic.frame, ACTUATORS).decode, port.statistics.garbage
+        decode, garbage = port.decoder(topic), port.statistics.garbage
 
         def deliver(data: Any) -> None:
             port.received[name] += 1
@@ -264,7 +264,7 @@ def _asks(node: Node, topic: Topic, depth: int) -> tuple[Callable[[], list[Any]]
     port.subscriptions[name] = subscription
     port.polled.add(subscription.handle.pointer)
     port.open_box(name, subscription, None, depth)
-    decode, take = codec(topic.type, topic.frame, ACTUATORS).decode, port.taker(subscription, kind)
+    decode, take = port.decoder(topic), port.taker(subscription, kind)
 
     def ask() -> list[Any]:
         found: list[bytes] = []

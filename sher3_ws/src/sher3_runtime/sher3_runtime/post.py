@@ -9,9 +9,13 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable
+from functools import lru_cache
 from operator import attrgetter
+from typing import Any
 
 Deliver = Callable[[bytes], None]
+REMEMBERED = 32
+"""Samples of a topic that are made once for all who hear them: as many as wait for the next look of a supervisor."""
 
 
 class Box:
@@ -44,6 +48,7 @@ class Post:
         self._boxes: dict[str, list[Box]] = {}
         self._kept: dict[str, bytes] = {}
         self._ready: list[Box] = []
+        self._decoders: dict[str, Callable[[bytes], Any]] = {}
         self._count = 0
 
     def box(self, name: str, depth: int, deliver: Deliver | None) -> Box:
@@ -71,6 +76,10 @@ class Post:
                 self._put(box, data)
 
         return send
+
+    def decoder(self, name: str, decode: Callable[[bytes], Any]) -> Callable[[bytes], Any]:
+        """Return what makes samples of a topic's bytes: each once, since nobody can change a sample."""
+        return self._decoders.setdefault(name, lru_cache(REMEMBERED)(decode))
 
     def listeners(self, name: str) -> Callable[[], int]:
         """Return what tells how many subscriptions a topic has."""

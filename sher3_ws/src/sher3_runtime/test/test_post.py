@@ -104,3 +104,19 @@ def test_a_graph_hears_the_same_either_way(middleware):
         graph.resume(listener)
         assert listener.heard[5:] == [float(k) for k in range(25 - depth, 25)]
         assert ports(listener).subscriptions["force/measured_cf"].handle.get_publisher_count() == 1
+
+
+def test_a_sample_is_made_once_for_all_who_hear_it():
+    """The same bytes are decoded once, whoever asks; bytes that are none are refused each time."""
+    post, asked = Post(), []
+
+    def decode(data):
+        asked.append(data)
+        return TextSample(data.decode())
+
+    one, other = post.decoder("a", decode), post.decoder("a", decode)
+    assert one(b"1") is other(b"1") and asked == [b"1"]
+    for _ in range(2):
+        with pytest.raises(UnicodeDecodeError):
+            one(b"\xff")
+    assert asked == [b"1", b"\xff", b"\xff"]

@@ -28,5 +28,5 @@ class SameTick:
     def take(self) -> list[tuple[Any, ...]]:
         """Return the samples of each complete tick, in the order of the streams, the oldest tick first."""
         first, *others = self._waiting.values()
-        stamps = sorted(stamp for stamp in first if all(stamp in other for other in others))
+        stamps = sorted(set(first).intersection(*others))
         return [tuple(waiting.pop(stamp) for waiting in self._waiting.values()) for stamp in stamps]

@@ -20,6 +20,7 @@ import math
 
 import numpy as np
 from numpy.typing import NDArray
+from sher3_common.compiled import compiled
 from sher3_common.reasons import Action, Reason
 from sher3_common.stamps import nanoseconds, seconds
 from sher3_common.vectors import Vector
@@ -57,12 +58,27 @@ times the noise of a tick, and little of the moment in which a hand takes hold."
 
 def sizes(channels: Array) -> Array:
     """Return the sizes of force and torque (..., 2) of channels (..., 5)."""
-    return np.sqrt(np.add.reduceat(channels * channels, (0, LEGS), axis=-1))
+    rows = _sizes(channels.reshape(-1, AXES))
+    return rows[0] if channels.ndim == 1 else rows
 
 
+@compiled
+def _sizes(channels: Array) -> Array:
+    out = np.zeros((len(channels), 2))
+    for n in range(len(channels)):
+        x, y, z, roll, tilt = channels[n, 0], channels[n, 1], channels[n, 2], channels[n, 3], channels[n, 4]
+        out[n] = math.sqrt(x * x + (y * y + z * z)), math.sqrt(roll * roll + tilt * tilt)
+    return out
+
+
+@compiled
 def _at_most(limit: float, channels: Array) -> Array:
     """Return channels (5,) whose force and torque are no larger than a limit."""
-    return channels * np.repeat(np.minimum(1.0, limit / np.maximum(sizes(channels), TINY)), GROUPS)
+    force, torque = _sizes(channels.reshape(1, AXES))[0]
+    out = np.empty(AXES)
+    out[:LEGS] = channels[:LEGS] * min(1.0, limit / max(force, TINY))
+    out[LEGS:] = channels[LEGS:] * min(1.0, limit / max(torque, TINY))
+    return out
 
 
 class HandDetector(PlainDetector):

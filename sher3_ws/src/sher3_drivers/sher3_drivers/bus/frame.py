@@ -115,7 +115,7 @@ def bundle(parts: Sequence[bytes]) -> bytes:
     """
     for part in parts:
         check_frames(part)
-    return b"".join([mark(part, channel) for channel, part in enumerate(parts)])
+    return b"".join([mark(part, channel) for channel, part in enumerate(parts) if part])
 
 
 def channels_of(frames: bytes) -> bytes:
@@ -130,10 +130,16 @@ def unbundle(frames: bytes, count: int) -> list[bytes]:
         FrameError: the bundle is no whole number of frames.
     """
     check_frames(frames)
-    parts = [bytearray() for _ in range(count)]
-    for start, channel in zip(range(0, len(frames), FRAME_SIZE), channels_of(frames), strict=True):
-        if channel < count:
-            parts[channel] += frames[start : start + FRAME_SIZE]
-    for part in parts:
-        part[_CHANNEL::FRAME_SIZE] = bytes(len(part) // FRAME_SIZE)
-    return [bytes(part) for part in parts]
+    channels = channels_of(frames)
+    return [_of_channel(frames, channels, channel) for channel in range(count)]
+
+
+def _of_channel(frames: bytes, channels: bytes, channel: int) -> bytes:
+    """Return the frames of one channel without their mark; `channels` is that of every frame."""
+    first, number = channels.find(channel), channels.count(channel)
+    if channels[first : first + number] == bytes((channel,)) * number:  # nearly always they follow each other
+        part = frames[FRAME_SIZE * first : FRAME_SIZE * (first + number)]
+    else:
+        places = [FRAME_SIZE * place for place, other in enumerate(channels) if other == channel]
+        part = b"".join([frames[start : start + FRAME_SIZE] for start in places])
+    return mark(part, 0) if part and channel else part

@@ -30,6 +30,7 @@ class LinkGroup:
         self.links = tuple(links)
         self.failures: dict[int, LinkError] = {}
         self._by_descriptor = {link.fileno(): (i, link) for i, link in enumerate(self.links) if link.fileno() >= 0}
+        self._readable = list(enumerate(self.links))
         self._cable = _shared_cable(self.links)
         self.waits = all(link.fileno() >= 0 for link in self.links)
 
@@ -55,18 +56,19 @@ class LinkGroup:
             ready = wait_readable(self._by_descriptor, timeout)
             candidates = [self._by_descriptor[descriptor] for descriptor in ready]
         else:
-            candidates = [(index, link) for index, link in enumerate(self.links) if index not in self.failures]
+            candidates = self._readable
         parts = [b""] * len(self.links)
         for index, link in candidates:
             try:
                 parts[index] = link.recv_frames()
             except LinkError as error:
                 self._leave_alone(index, error)
-        return bundle(parts)
+        return bundle(parts) if any(parts) else b""
 
     def _leave_alone(self, index: int, error: LinkError) -> None:
         """Note that a link cannot be read, and wait on it no more."""
         self.failures[index] = error
+        self._readable = [entry for entry in self._readable if entry[0] != index]
         self._by_descriptor = {fd: entry for fd, entry in self._by_descriptor.items() if entry[0] != index}
 
     def send(self, frames: bytes) -> Sequence[tuple[int, LinkError]]:

@@ -7,7 +7,7 @@ import weakref
 from sher3_drivers.bus.frame import FRAME_SIZE, check_frames
 from sher3_drivers.errors import LinkError
 
-_channels: dict[str, weakref.WeakSet[VirtualLink]] = {}
+_channels: dict[str, list[weakref.ref[VirtualLink]]] = {}
 
 
 class VirtualLink:
@@ -21,16 +21,17 @@ class VirtualLink:
         self.dropped = 0
         self._queue = bytearray()
         self._open = True
-        self._members = _channels.setdefault(channel, weakref.WeakSet())
-        self._members.add(self)
+        self._members = _channels.setdefault(channel, [])
+        self._members[:] = [*(member for member in self._members if member() is not None), weakref.ref(self)]
 
     def send_frames(self, frames: bytes) -> None:
         """Append whole frames to the queue of every other participant."""
         if not self._open:
             raise LinkError("is closed", link=self.name, remedy="open it again")
         check_frames(frames)
-        for member in self._members:
-            if member is not self:
+        for reference in self._members:
+            member = reference()
+            if member is not None and member is not self:
                 room = self.CAPACITY * FRAME_SIZE - len(member._queue)
                 member._queue += frames[:room]
                 self.dropped += max(0, len(frames) - room) // FRAME_SIZE
@@ -51,4 +52,4 @@ class VirtualLink:
         """Leave the channel."""
         self._open = False
         self._queue.clear()
-        self._members.discard(self)
+        self._members[:] = [member for member in self._members if member() is not self]

@@ -144,7 +144,7 @@ class MockDriveBus:
         self.crossed: Crossing | None = None
         self.plant, self._clock, self._period = plant, clock, settings.period
         self._period_ns = round(settings.period * 1e9)
-        self._stepped_at = clock()
+        self._stepped_at, self._served_at = clock(), -1
         self.links = tuple(links)
         self._group = LinkGroup(links)
         scales: dict[str, AxisScale] = {
@@ -198,9 +198,12 @@ class MockDriveBus:
         frames = self._group.receive(timeout)
         if self._group.failures:
             raise next(iter(self._group.failures.values()))
+        now, channels = self._clock(), self._channels
         if self.tamper_received is not None:
             frames = self._tampered(self.tamper_received, frames, True)
-        now, channels = self._clock(), self._channels
+        elif not frames and now == self._served_at:
+            return False  # in stepped time: all that was due has been done
+        self._served_at = now
         for can_id, length, number, data in BUNDLED.iter_unpack(frames):
             if number < len(channels):
                 channels[number].take(can_id, data[:length], now)

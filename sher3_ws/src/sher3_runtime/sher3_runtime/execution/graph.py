@@ -7,7 +7,7 @@ Samples go by the middleware, or by the `post` of the graph, which takes half of
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from contextlib import nullcontext
 from functools import partial
 from itertools import groupby
@@ -104,6 +104,10 @@ class Graph:
 
         Ticks of one phase run in the order in which their nodes were added; then every sample is delivered.
         """
+        return list(self.steps(count))[-1]
+
+    def steps(self, count: int) -> Iterator[int]:
+        """Run ticks as `step` does; give the stamp of each after it. Services are served before the first one."""
         if not self._matched:
             self._match()
         if self._post is not None:
@@ -118,7 +122,7 @@ class Graph:
                     tick.due_ns = self.clock.time_ns
                     tick.run(self.clock.time_ns)
                 self.settle()
-        return stamp
+            yield stamp
 
     def pause(self, node: Node) -> None:
         """Stop a node as SIGSTOP stops its process: no tick, no callback; nodes of the same process stop with it.

@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from sher3_common.operating_state import StateCommand
 from sher3_description import Robot
+from sher3_drivers.drive.motor_driver import MotorDriver
 from sher3_faults.kinds import OK
 from sher3_faults.requests import make_request
 from sher3_runtime import Graph
@@ -73,13 +74,18 @@ def off_its_way(run: MatrixRun, begin: Callable[[], None], ticks: int) -> tuple[
     way, farthest = np.array(plant.true_tip[1]), 0.0
     step = (way - before) / BEFORE
     begin()
-    for _ in range(ticks):
-        going = driver.stop.first is None and any(driver.watches.motion.demand.newest)
-        run.graph.step()
+    going = _going(driver)
+    for _ in run.graph.steps(ticks):
         way = way + step * going
         farthest = max(farthest, float(np.linalg.norm(plant.true_tip[1] - way)))
+        going = _going(driver)
     first = driver.stop.first
     return farthest, first.reason.name if first else run.operator.state
+
+
+def _going(driver: MotorDriver) -> bool:
+    """Return whether the drives are told to move, and the driver has not stopped them."""
+    return driver.stop.first is None and any(driver.watches.motion.demand.newest)
 
 
 def recover(run: MatrixRun) -> bool:
