@@ -153,7 +153,7 @@ class Evidence:
         return sum(v for (_, c), v in after.loss.items() if c == channel)
 
     def shown(self, channel: Channel, after: Fit) -> float:
-        """Return the mean square of the noise over that of the floor, as far as a fit shows it: 1 or, of a bound, less.
+        """Return the mean square of the noise over that of the floor: 1 of a measured floor, less of a bound.
 
         An effect of half a bound is worth a name where a law of it leaves a tenth of the bound on runs left out.
         """

@@ -123,7 +123,7 @@ class Finding(Generic[E]):
         judged: causes and gaps with their odds.
         whole: the finding with every cause that was found, named or not; None where it is this one.
         imitations: effects that fit a gap although they are hardly its cause.
-        dismissed: channels whose gap is none of its own.
+        dismissed: channels above their floor that are judged to have no gap of their own.
     """
 
     evidence: E

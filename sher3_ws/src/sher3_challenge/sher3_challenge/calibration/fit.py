@@ -197,6 +197,9 @@ def logistic(
     against the last class alone. A number that an example lacks is at its middle, where it tells nothing. `share` is
     the weight of an answer's examples, 1 where it names none. With a model of before, of the same classes and inputs,
     the scale of the inputs is its own, and its weights are expected instead of none.
+
+    Raises:
+        ChallengeError: all examples have one answer.
     """
     x = np.array([[e.numbers.get(name, math.nan) for name in inputs] for e in examples], dtype=float)
     x = x.reshape(len(examples), len(inputs))

@@ -65,7 +65,7 @@ class Fault:
     seed: int
 
     def apply(self, rig: Any) -> dict[str, float]:
-        """Write the fault into a rig; return its parameters."""
+        """Write the fault into a rig; return its parameters. Raises FaultError where its actuator cannot have it."""
         if self.actuator not in self.kind.places:
             limit = ", ".join(self.kind.places)
             raise FaultError(f"{self.kind.name} cannot sit there", value=self.actuator, limit=limit)

@@ -56,7 +56,7 @@ class SearchPlan:
         single: improves a cause that is alone before a second one is looked for; for laws that are exact.
         together: whether plain laws are fitted at once and richer ones looked for in what they leave; each cause is
             then searched again beside the others.
-        beyond: loss of a fit that no residual holds, in squares of the floor, such as that of an axis at rest.
+        beyond: loss of a fit that is in no residual, in squares of the floor: that of an axis at rest, for example.
         openings: further searches, in turn.
         reviews: put the result right, in turn.
     """

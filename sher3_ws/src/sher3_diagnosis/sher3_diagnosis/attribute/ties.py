@@ -12,8 +12,8 @@ from typing import TypeVar
 T = TypeVar("T")
 
 TIE = 0.01
-"""Difference of two held-out losses that is none, in squares of the floor: rounding makes 1e-6, and a number must buy
-1200 times as much. Set by that argument."""
+"""Two held-out losses that differ by less are equal, in squares of the floor: rounding makes 1e-6, and a number must
+buy 1200 times this. Set by that argument."""
 
 
 def first_of_least(values: Mapping[T, float]) -> T:

@@ -1,4 +1,6 @@
-"""Which causes are worth nothing: less than laws are off by, and no more than one of another family would be."""
+"""Which causes are worth nothing: they explain less than laws are off by, and a cause of another family explains as
+much.
+"""
 
 from __future__ import annotations
 
@@ -28,7 +30,7 @@ def significant_causes(
 
 
 def untold(evidence: Evidence, attribution: Attribution, index: int) -> bool:
-    """Return whether a cause gains less than laws may be off by, and no more than one of another family would."""
+    """Return whether a cause explains less than laws may be off by, and a cause of another family as much."""
     family = attribution.fit.terms[index].effect.family
     others = any(f.terms[-1].effect.family != family for f in attribution.rivals[index])
     plain = is_plain(evidence, attribution.fit.terms[index])

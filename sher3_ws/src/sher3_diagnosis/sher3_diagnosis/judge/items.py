@@ -29,9 +29,10 @@ def items_of(finding: Finding) -> list[Item]:
 def gaps_of(finding: Finding, taken: set[Channel]) -> list[Item]:
     """Return the significant gaps that no cause explains but for less than half.
 
-    Only a larger gap of the same place may echo in one: every residual is predicted from its stage's measured input,
-    and the tip's from the encoders at the loads. The tip's residual is one, split in free and loaded samples: what is
-    less than `LEAST_SHARE` of the other part is what that one's cause leaves.
+    A gap echoes in another gap only at the same place, and only from the larger to the smaller one: every residual is
+    predicted from its stage's measured input, and the tip's from the encoders at the loads. The tip has one residual,
+    split in free and loaded samples. A part of less than `LEAST_SHARE` of the other part is what the other part's cause
+    leaves.
     """
     evidence, gaps = finding.evidence, finding.significant
     out = []

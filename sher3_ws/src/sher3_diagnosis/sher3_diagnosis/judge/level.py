@@ -1,11 +1,12 @@
 """How far one machine is from its pages: nobody knows beforehand, and what its places leave tells each of the others.
 
-Weights were set on robots that are imperfect to 0.3 to 10 %. A machine that is known by its drawing may be worse, all
-of it: then what a right cause leaves is measured by that machine, not by those robots. With the level L of a machine
+Weights were set on robots that are imperfect to 0.3 to 10 %. A machine of which the drawing alone is known may be worse
+at every place. What a right cause leaves is then compared with the level L of that machine, and not with those robots:
 
     P(right | left) = sum over L of P(L | what its other places leave) P(right | left, L),
 
-where what is left counts in units of the level. What a place leaves tells no level of its own: it would excuse itself.
+where what is left counts in units of the level. The level at a place is told by the other places alone: otherwise a
+wrong cause, which leaves much, would excuse itself.
 """
 
 from __future__ import annotations

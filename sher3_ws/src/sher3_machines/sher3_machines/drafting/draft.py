@@ -117,9 +117,10 @@ def _unit_of(place: Place, x: Array) -> tuple[str, float, str]:
 
 
 def by_motion(label: str, signals: Mapping[str, Place], tables: Tables, guesses: list[str]) -> Mapping[str, Place]:
-    """Return the signals of an axis without places that do not move with it: they are what a drive reports or is told.
+    """Return the signals of an axis without those that were taken for positions and do not move with it.
 
-    A `load` without the unit of a place is then a duty, and a `command` that names no place a force.
+    Such a signal is what a drive reports or is told: a `load` without a unit of position is a duty, and a `command`
+    that names no position is a force.
     """
     out = dict(signals)
     for signal, force, words in (("load", "effort", "an effort and no encoder"), ("reference", "command", "a command")):
@@ -177,7 +178,7 @@ def _axis(axis: str, signals: Mapping[str, Place], tables: Tables, period: float
 
 
 def per_second(unit: str) -> str:
-    """Return the unit of a velocity that belongs to that of a place, rad/s where there is none."""
+    """Return the unit of velocity that goes with a unit of position, mm/s with mm; rad/s where there is none."""
     return f"{unit}/s" if f"{unit}/s" in VELOCITIES else "rad/s"
 
 

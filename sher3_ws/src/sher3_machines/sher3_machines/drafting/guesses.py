@@ -42,7 +42,7 @@ LATE, FORWARD = 0.5, 0.95
 
 
 def clock_of(tables: Tables, guesses: list[str]) -> str:
-    """Return the name of the time column: one whose name says so and that grows; of several that with most samples.
+    """Return the name of the time column: its name says so, and it grows; of several, the column with most samples.
 
     Raises:
         MachineError: nothing looks like a time.
@@ -97,7 +97,7 @@ def period_of(stamps: Array) -> float:
 
 
 def time_unit(clock: str, stamps: Array, guesses: list[str]) -> str:
-    """Return the unit of stamps (n,): of the name, or the one that makes the rate usual."""
+    """Return the unit of stamps (n,): the unit in the name, else the unit that gives a usual rate."""
     unit = bare_and_unit(bare(clock))[1]
     if unit in TIME_UNITS:
         return str(unit)
@@ -169,7 +169,7 @@ def scatter(x: Array) -> float:
 
 
 def count_of(x: Array) -> float | None:
-    """Return the smallest step of a signal where it is one of an encoder: most steps are whole multiples of it."""
+    """Return the count of an encoder: the smallest step of its signal, if most steps are whole multiples of it."""
     steps = np.abs(np.diff(x))
     steps = steps[steps > 1e-12 * max(1.0, reach(x))]
     if len(steps) < FEWEST_STEPS:

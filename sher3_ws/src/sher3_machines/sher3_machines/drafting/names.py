@@ -76,7 +76,7 @@ PLACES = ("m", "cm", "mm", "um", "rad", "mrad", "deg", "arcmin", "arcsec", "rev"
 CLEAR = vocabulary("deg degree degrees rad radians rpm mm ms msec millis us usec micros sec secs seconds")
 """Words that are nothing but a unit: a name by themselves, `ms,deg,rpm`, or at its end, `speedRpm`."""
 DRIVING = vocabulary("motor mot qm thetam antrieb drive schrittzähler steps schritte")
-"""The one of two places of an axis that the drive moves; the other one is that of the load."""
+"""Words for the position on the side of the drive, of an axis with two positions; the other one is the load's."""
 WORDS = POSITION | VELOCITY | EFFORT | CURRENT | COMMAND | ASKED | MEASURED | IGNORED
 TELLING = WORDS | SECOND | TEMPERATURE | APPLIED | TURNING | TIME | COUNTERS
 """Words by which a column tells something by itself."""

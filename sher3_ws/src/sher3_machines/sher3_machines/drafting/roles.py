@@ -82,7 +82,7 @@ def _living(
 
 
 def with_output(placed: Mapping[Place, tuple[str, str]], tables: Tables) -> dict[Place, tuple[str, str]]:
-    """Return the signals with a column `y` as a place where none was recorded, beside one that drives: `u`, `y`."""
+    """Return the signals with a column `y` as the position, where none was recorded and another column drives: `u`."""
     signals = {signal for signal, _ in placed.values()}
     if signals & {"position", "load", "velocity"} or "command" not in signals or "y" not in tables:
         return dict(placed)
@@ -106,7 +106,7 @@ def with_drive(placed: Mapping[Place, tuple[str, str]]) -> dict[Place, tuple[str
 def with_speeds(placed: Mapping[Place, tuple[str, str]]) -> dict[Place, tuple[str, str]]:
     """Return the signals with velocities as places, where no place was recorded at all: they are integrated.
 
-    What is asked of a speed is then the reference, and anything else that is asked what the drive is told.
+    A speed that is asked for is then the reference; any other demand is what the drive is told.
     """
     if any(signal in ("position", "load") for signal, _ in placed.values()):
         return dict(placed)
@@ -125,9 +125,9 @@ def with_speeds(placed: Mapping[Place, tuple[str, str]]) -> dict[Place, tuple[st
 
 
 def with_loads(placed: Mapping[Place, tuple[str, str]]) -> dict[Place, tuple[str, str]]:
-    """Return the signals with the one place of an axis that no drive moves as that of its load, beside those it moves.
+    """Return the signals in which the position of an axis that no drive moves is its `load`, beside the driven ones.
 
-    Where only trackers and scales were recorded, theirs are the places.
+    Where trackers and scales alone were recorded, what they read stays a position.
     """
     out = dict(placed)
     if all(signal != "position" for signal, _ in placed.values()):

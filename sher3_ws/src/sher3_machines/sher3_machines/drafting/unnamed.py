@@ -60,7 +60,7 @@ def given(names: Sequence[str], tables: Tables) -> dict[Place, str]:
 
 
 def told_by_motion(tables: Tables, rate: float | None, guesses: list[str]) -> dict[Place, str]:
-    """Return names for columns without any: the time grows evenly, and a speed is what a place is the integral of.
+    """Return names for columns that have none: the time grows evenly, and a position is the integral of its speed.
 
     Empty where there is no time, or where no two columns without a name are place and speed.
     """
@@ -79,10 +79,10 @@ def told_by_motion(tables: Tables, rate: float | None, guesses: list[str]) -> di
 
 
 def told_by_blocks(tables: Tables, rate: float | None, joints: int, guesses: list[str]) -> dict[Place, str]:
-    """Return names for a table without any that holds blocks of as many columns as a robot has joints.
+    """Return names for a table that has none and holds blocks of columns, with a column for each joint of a robot.
 
-    One block is the speed of another one. What is left is the effort; of two, the one that goes more as the slope of
-    the speed is the acceleration. Empty where no block is the speed of another.
+    One block is the speed of another block. The block that is left is the effort; of two that are left, the block that
+    follows the slope of the speed more closely is the acceleration. Empty where no block is the speed of another.
 
     Args:
         tables: of the file.

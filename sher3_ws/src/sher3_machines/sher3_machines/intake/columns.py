@@ -136,7 +136,7 @@ def stamps_of(column: Column, tables: Tables, clock: Clock, run: str) -> Array |
 
 
 def clock_beside(column: Column, tables: Tables, clock: Clock, run: str) -> str | None:
-    """Return the column of the stamps of a column: in its own table, else as it is named; None where it is a rate."""
+    """Return the stamps that belong to a column: those of its table, else as the clock names them; None for a rate."""
     if clock.column is None:
         return None
     table = f"{home}/" if (home := table_of(column.column)) else ""

@@ -12,7 +12,7 @@ NAMED = 3
 
 
 def told_once(notes: Iterable[str], runs: Sequence[str]) -> list[str]:
-    """Return the notes with those that say the same of several runs made one, in the order of the first of them.
+    """Return the notes, with one in place of all that say the same of several runs, in the order of the first of them.
 
     Args:
         notes: sentences; one of a run begins with its name and a colon.

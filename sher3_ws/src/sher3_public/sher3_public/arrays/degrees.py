@@ -31,11 +31,11 @@ def check_degrees(
 ) -> None:
     """Raise InputError where the model explains the efforts far better with angles in degrees.
 
-    Efforts in a unit of their own, as before a gear, are proportional to what the model needs in radians: that is no
-    reason for degrees.
+    Efforts in a unit of their own, such as those before a gear, are in proportion to what the model needs in radians.
+    They do not speak for degrees.
 
-    Where the forces are those of servos, which grow with the unit, weight alone tells them apart, and a robot may have
-    another one: within half a turn that is a guess.
+    The forces of servos grow with the unit of the angle. There the weight alone tells the units apart, and a robot may
+    weigh more or less than its model: within half a turn degrees are a guess and no error.
 
     Args:
         names: of the joints, one for each column of the positions.

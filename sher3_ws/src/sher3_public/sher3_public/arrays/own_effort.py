@@ -17,7 +17,7 @@ LIKE_ITS_LAW = 0.02
 """Share of an effort's scatter by which it may differ from the law of its drive and be the simulator's own. Recorded
 torques of real drives differ by a tenth and more; rounding and an encoder's noise by less than a hundredth."""
 WINDOW = 21
-"""Samples over which readings are smoothed before they are held against a law, at least; a run has as many."""
+"""Samples, at least, over which readings are smoothed before they are compared with a law; every run has as many."""
 SMOOTH = 0.04
 """Seconds of that at least: readings that come faster bring more noise to a speed."""
 USUAL = 0.9
@@ -25,8 +25,9 @@ USUAL = 0.9
 LOOKED_AT = 4000
 """Samples at most at which an effort without a control is held against the model."""
 LIKE_A_STEP = 0.2
-"""Share by which the inertia that an effort moves beyond the model's may differ from what a step adds, and be it. A
-rotor that nobody modelled has no reason to weigh half a time step times the servo's gain."""
+"""An effort may move more inertia than the model has. The step of the integrator made the excess if it differs from
+what a step adds by less than this share: a rotor that nobody modelled has no reason to weigh half a time step times the
+servo's gain."""
 NAMED = "simulated=True or False"
 
 

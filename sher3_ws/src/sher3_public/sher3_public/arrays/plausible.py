@@ -13,16 +13,16 @@ from sher3_public.records import Array, Arrays
 SLOWEST = 0.5
 """Time between two samples, s, beyond which no motion of a joint is seen."""
 BEYOND = 5.0
-"""Times a joint's own scatter that the places it was told may scatter. A servo follows; only a torque is in a unit that
-has nothing to do with the place."""
+"""Scatter of the positions that a joint was told, over the scatter of its own position, beyond which they were torques:
+a servo follows, and a torque has another unit."""
 SETTLED = 0.5
 """Share of its scatter that a servo may keep in the second half of a record in which nothing was told."""
 FOLLOWS = 0.98
 """Correlation of a motor's force with the place of its joint from which it is taken for the place itself."""
 SAME = 2.0
-"""Factor within which it then is as large as the place."""
+"""Factor within which that force has the size of the position."""
 APART = 0.9
-"""Correlation of a servo's reference with its own joint below which another joint is asked whose it is."""
+"""Correlation of a servo's reference with its own joint below which the other joints are compared with it."""
 UNITS = {"ms": 1e3, "us": 1e6, "ns": 1e9}
 """Other units of stamps, per s."""
 TURNS, WIDER = 2.0, 2.0
@@ -40,7 +40,7 @@ def stamps(time: Array) -> Array:
 
 
 def control_of(name: str, control: Array, position: Array, drive: Drive) -> None:
-    """Accept what an actuator was told, (n,), as the model has it: as a place of a servo, or as the force of a motor.
+    """Check that a control (n,) can be what the model takes it for: a servo's position, or a motor's force.
 
     Raises:
         InputError: it cannot be that.

@@ -113,7 +113,7 @@ class Stated:
             raise InputError("controls do not fit", value=value, limit=limit, remedy="name one for each column")
 
     def delayed(self, joint: dict[str, Any], guesses: list[str]) -> None:
-        """Let the control of a joint act as late as stated."""
+        """Let the control of a joint act as late as stated; raises InputError for a delay below zero."""
         late = self.delay.get(joint["name"], 0.0) if isinstance(self.delay, Mapping) else self.delay
         signals = [joint["signals"][x] for x in ("reference", "command") if x in joint["signals"]]
         if not late or not signals:

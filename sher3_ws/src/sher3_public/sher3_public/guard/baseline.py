@@ -19,7 +19,7 @@ Schema = Literal["sher3.baseline/1"]
 
 
 class Schemed(BaseModel):
-    """Any file of ours: it says what it is."""
+    """A file of this project, which names its schema."""
 
     schema_: str = Field(alias="schema")
 

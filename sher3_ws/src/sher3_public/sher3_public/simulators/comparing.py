@@ -25,7 +25,7 @@ STAMPS: Names = ("time", "t")
 COMMANDS: Names = ("ctrl", "control", "reference", "command")
 POSITIONS: Names = ("qpos", "position", "q")
 SAME = 1e-6
-"""Share of their largest value by which commands may differ and be the same: a table's last printed digits."""
+"""Commands that differ by less than this share of their largest value are the same: tables round their last digit."""
 
 
 @dataclass(frozen=True)

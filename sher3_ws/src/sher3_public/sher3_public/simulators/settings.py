@@ -23,8 +23,8 @@ FINER = (2, 5, 10)
 LATEST = 20
 """Rows by which commands may be late at most."""
 ALIKE = 0.01
-"""Share of what two traces differ by that a replay may leave and be the trace. A convention; the right setting leaves
-rounding, another one as much as the model's own does."""
+"""A replay is the trace where it leaves less than this share of what the two traces differ by. A convention: the right
+setting leaves rounding, and a wrong setting leaves as much as the model's own."""
 
 SHOTS = 6
 """Trials for the speed at the start; each leaves a tenth of the error or less."""

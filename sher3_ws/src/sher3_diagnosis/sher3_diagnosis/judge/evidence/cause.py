@@ -48,8 +48,8 @@ class CauseEvidence:
 
     Attributes:
         left: share left on held-out runs.
-        part: that gap over the one that there is without any cause, at most 1.
-        stray: share left that is not in proportion to what the cause adds, as the remainder of a bent law is.
+        part: that gap over the gap without any cause, at most 1.
+        stray: share left that is not in proportion to what the cause adds; a bent law leaves one that is.
         law: share left once its law is a free function of the inputs that the effect's page states. Like the next two
             None on a machine whose views do not tell them.
         place: of all quantities of its place.
@@ -62,8 +62,8 @@ class CauseEvidence:
         ratio: gap over floor, with the mean of every run.
         power: of the gap over the floor, less one, of the component with most: without what a free mean takes.
         samples: that tell of it.
-        idealised: 1 where a real machine adds to the law of a cause of this gap (`Effect.leaves_out`), 0 where all are
-            complete: what several causes leave may be of any of them.
+        idealised: 1 where the law of a cause of this gap leaves something out (`Effect.leaves_out`), 0 where the laws
+            of all are complete: what several causes leave may come from any of them.
     """
 
     left: float

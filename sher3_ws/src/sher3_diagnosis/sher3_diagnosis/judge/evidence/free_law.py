@@ -1,7 +1,7 @@
 """Laws of any shape: what free functions of given inputs leave of a signal, on runs they were not trained on.
 
-An effect is known by the inputs its law may depend on. A remainder that a free function of these inputs takes away is
-the shape of the law; one that only other inputs take away is another law.
+An effect is known by the inputs that its law may depend on. If a free function of these inputs takes a remainder away,
+the remainder is the shape of the law; if only other inputs do, it is another law.
 """
 
 from __future__ import annotations

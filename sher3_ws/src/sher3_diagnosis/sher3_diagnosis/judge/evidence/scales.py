@@ -10,11 +10,11 @@ LEAST_SHARE = 0.003
 LEAST_FLOORS = 0.3
 """Power over the floor below which a remainder is none: a healthy robot as built leaves as much."""
 MOST_POWER = 10.0
-"""Power over its threshold, or of a remainder over the floor, above which there is one beyond doubt: how much larger it
-is tells nothing more."""
+"""Power of a gap over its threshold, or of a remainder over the floor, above which either is beyond doubt. A larger
+power tells nothing more and counts as this one."""
 MOST_FLOORS = 25.0
-"""Gap over its floor above which there is one beyond doubt, so that a larger one is not unusual either: the upper end
-of what labelled robots are drawn with (`sher3_challenge.calibration.drawn.GAP`)."""
+"""Gap over floor above which a gap is beyond doubt. A larger gap counts as this one, so that its size is not unusual:
+the upper end of what labelled robots are drawn with (`sher3_challenge.calibration.drawn.GAP`)."""
 BENT = 0.10
 """Share of a gap that a right law leaves at most by its own shape, which differs from machine to machine: the upper end
 of what labelled robots are drawn with (`sher3_challenge.plants.level.SHAPE`). So much is as likely another law's."""
@@ -22,9 +22,11 @@ WHOLE = 0.75
 """Say of the share of the whole gap in what several causes leave. Of 0.5, 0.6, 0.75 and 1 the likeliest on labelled
 axes, arms and robots (`bench/imperfect.py`, `bench/other_odds.py`)."""
 LEAST_LAW = 0.002
-"""Share that own inputs leave below which it does not matter what explains it; nor does it below the floor."""
+"""Share that a free law of the cause's own inputs leaves, below which it does not matter what explains the rest. It
+does not matter below the floor either."""
 LEAST_OWN = 0.02
-"""Share of what own inputs leave that others must not explain, below which the remainder is theirs beyond doubt."""
+"""Of what the own inputs leave, the share that no other input explains. Below this the remainder belongs to the other
+inputs beyond doubt."""
 
 
 def log_above(x: float, least: float) -> float:

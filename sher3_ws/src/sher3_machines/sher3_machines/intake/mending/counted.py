@@ -20,15 +20,17 @@ NEAR = 0.25
 MOST = 0.9
 """Share of the rows in motion that must be near one."""
 CLEARER = 0.5
-"""What whole numbers leave of the time that passed, over what the stamps leave, below which they are the clock."""
+"""Residual of the time that passed about whole periods, over its residual about the stamps, below which the whole
+periods are the clock."""
 SURE = 0.15
-"""Standard deviation of what passed, in periods, up to which a slow row is counted too: three of them are no half."""
+"""Standard deviation of the time that passed, in periods, up to which a slow row counts too: three of them are less
+than half a period."""
 LONGEST = 20.0
 """Periods between two rows beyond which the stamps are believed: a mean of two speeds tells no such time."""
 
 
 def counted_stamps(t: Array, x: Array, v: Array) -> Array | None:
-    """Return stamps (n,) that the motion counts, or None where it does not, or they are as good as they are.
+    """Return stamps (n,) by the periods that the motion tells; None where it tells none, or the stamps are as good.
 
     Rows between which no time passed have one stamp; those between which nothing moved are a period apart.
 

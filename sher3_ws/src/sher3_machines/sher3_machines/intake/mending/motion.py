@@ -19,7 +19,7 @@ SMOOTHED = 9
 MOVING = 0.02
 """Share of the usual speed below which an axis stands: its sign is then that of the motion before."""
 CLEARER = 0.5
-"""What signs by the motion leave of an effort, over what the numbers as recorded leave, below which they are a size."""
+"""Residual of an effort with the signs of the motion over its residual as recorded, below which it is a magnitude."""
 
 
 def speed_of(t: Array, x: Array) -> Array:
@@ -32,7 +32,8 @@ def speed_of(t: Array, x: Array) -> Array:
 def speed_ratio(t: Array, x: Array, v: Array) -> float | None:
     """Return how far positions (n,) move over the integral of speeds (n,) at stamps (n,); None where they do not agree.
 
-    The slope of one through the other, about a constant and a drift, so that an offset of the speed does not count.
+    It is the slope of the positions over that integral, with a constant and a drift fitted beside it, so that an offset
+    of the speed does not count.
     """
     way = np.concatenate([[0.0], np.cumsum(0.5 * (v[1:] + v[:-1]) * np.diff(t))])
     drift = np.column_stack([np.ones(len(t)), t - t.mean()])

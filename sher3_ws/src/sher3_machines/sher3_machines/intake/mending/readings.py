@@ -13,8 +13,8 @@ MISSING = 0.05
 LONGEST_GAP = 10
 """Readings in a row that are interpolated over where no stamps say how long they take."""
 GLITCH = 20.0
-"""A reading off its neighbours' median by so many times what 97 of 100 readings are off is none of the machine's: in a
-record of a few hundred rows three bad ones are one in a hundred."""
+"""Distance of a reading from its neighbours' median, over the distance that 97 of 100 readings keep, from which it is a
+glitch. Not 99 of 100: of a few hundred rows, three bad readings are one in a hundred."""
 GLITCH_TRAVEL = 0.05
 """Share of the travel by which a glitch is off at least."""
 FEW_GLITCHES = 0.005

@@ -1,7 +1,7 @@
 """Counters that start again: angles within one turn, and fields of a protocol that hold so much and no more.
 
-A servo that sends its angle as 16 bits over 25 rad jumps by 25 rad where it would leave that range. What moves on in
-its sense before and after a jump of all its range against it has not come back: its counter has.
+A servo that sends its angle as 16 bits over 25 rad jumps by 25 rad where it would leave that range. An axis that moves
+on in one sense before and after a jump of the whole range against it did not come back: its counter began again.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ def wrapped_over(x: Array, step: float, rotary: bool) -> float:
 
     Args:
         x: as recorded.
-        step: of its encoder: fields of a protocol hold a power of two of them.
+        step: one count of its encoder: fields of a protocol hold a power of two of counts.
         rotary: whether it is an angle, of which jumps by a turn are wraps whatever it does before and after.
     """
     steps = np.diff(x)

@@ -74,7 +74,7 @@ def _as_rows(column: list[Any]) -> object:
 
 
 def read_lines(path: Path) -> dict[str, Array]:
-    """Return the table of a file with a JSON object in each line; what a line leaves out is nan."""
+    """Return the table of a file with a JSON object in each line; what a line leaves out is nan. Raises ValueError."""
     rows = [parse_json(line) for line in decoded(path).splitlines() if line.strip()]
     if not rows or not all(isinstance(row, dict) for row in rows):
         raise ValueError("not every line is an object")
