@@ -81,7 +81,6 @@ def test_third_party_imports_are_declared():
         "pin": "pinocchio",
         "python-can": "can",
         "pyyaml": "yaml",
-        "scikit-learn": "sklearn",
         "ros-jazzy-rclpy": "rclpy",
         "typing-extensions": "typing_extensions",
     }

@@ -36,8 +36,6 @@ KEYS = {
     "rich": "python3-rich",
     "rosbags": "python3-rosbags-pip",
     "scipy": "python3-scipy",
-    "sklearn": "python3-sklearn",
-    "threadpoolctl": "python3-threadpoolctl",
     "typer": "python3-typer",
     "typing_extensions": "python3-typing-extensions",
     "yaml": "python3-yaml",

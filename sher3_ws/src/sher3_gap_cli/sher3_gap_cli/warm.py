@@ -18,13 +18,18 @@ EXCITATIONS = ("sweep", "reversals")
 
 def warm_up() -> str:
     """Diagnose a simulated robot with a fault; return the status, which depends on nothing but the sources."""
+    import numpy as np
     from sher3_bags import write_case
     from sher3_description import load_robot
+    from sher3_diagnosis.judge.evidence.free_law import loss_left
     from sher3_effects.effects_file import effects_from_text
     from sher3_gap import diagnose_case
     from sher3_gap.excitation import excite
     from sher3_gap.experiments.rehearsal import rehearse
 
+    # The case leaves nothing that free laws would be asked of.
+    ramp = np.arange(180.0)[:, None]
+    loss_left([ramp], ramp, np.arange(len(ramp)) % 3)
     robot = load_robot()
     wanted = [(excite(label, robot), repeat) for label in EXCITATIONS for repeat in range(2)]
     runs = rehearse(robot, wanted, effects_from_text(json.dumps(EFFECTS)))

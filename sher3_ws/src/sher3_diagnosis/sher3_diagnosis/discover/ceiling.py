@@ -1,6 +1,6 @@
 """The free-form ceiling: how much of a gap any function of the recorded inputs closes on runs it has not seen.
 
-Boosted trees of scikit-learn, cross-fitted by run: what no formula of these inputs can be expected to exceed by much.
+Boosted trees, cross-fitted by run: what no formula of these inputs can be expected to exceed by much.
 """
 
 from __future__ import annotations
@@ -12,11 +12,11 @@ import numpy as np
 from sher3_diagnosis.channel import Array
 from sher3_diagnosis.discover.columns import Columns
 from sher3_diagnosis.discover.feature import Factor, Feature
-from sher3_diagnosis.fit.threads import one_thread
+from sher3_diagnosis.fit.trees import Growth, boosted
 
 REACHES = (1e-3, 3e-2, 0.3)
 """Displacements over which the direction is remembered, shares of the range of a position."""
-TREES = 80
+GROWTH = Growth(trees=80, rate=0.12, leaves=31, bins=255, ridge=0.0)
 """Trees: more change the ceiling by less than its interval and cost as much as everything else."""
 PAST = (0.01, 0.1)
 """Time constants by which the past is looked at, s."""
@@ -38,17 +38,18 @@ def inputs(columns: Columns) -> list[Feature]:
 
 def predicted(columns: Columns, component: int, folds: Sequence[Sequence[int]]) -> list[Array]:
     """Return what the trees predict of a component in every run, from the runs of the other folds; whitened (N,)."""
-    from sklearn.ensemble import HistGradientBoostingRegressor
-
     features = inputs(columns)
     x = [np.column_stack([columns.at_samples(r, f) for f in features]) for r in range(len(columns.target))]
     y = [t[:, component] for t in columns.target]
     out = [np.zeros_like(v) for v in y]
     for fold in folds:
         train = [r for r in range(len(x)) if r not in fold]
-        trees = HistGradientBoostingRegressor(max_iter=TREES, learning_rate=0.12, random_state=0)
-        with one_thread():
-            trees.fit(np.vstack([x[r] for r in train]), np.concatenate([y[r] for r in train]))
-            for r in fold:
-                out[r] = trees.predict(x[r])
+        new = boosted(
+            np.vstack([x[r] for r in train]),
+            np.concatenate([y[r] for r in train]),
+            np.vstack([x[r] for r in fold]),
+            GROWTH,
+        )
+        for r, part in zip(fold, np.split(new, np.cumsum([len(y[r]) for r in fold])[:-1]), strict=True):
+            out[r] = part
     return out

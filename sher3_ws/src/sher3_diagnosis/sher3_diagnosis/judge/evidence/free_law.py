@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sher3_diagnosis.channel import Array
-from sher3_diagnosis.fit.threads import one_thread
+from sher3_diagnosis.fit.trees import Growth, boosted
 
 FOLDS = 3
 """Groups of runs, each predicted from the others."""
@@ -24,6 +24,8 @@ BINS = 12
 """Bins of an input when it is looked at alone."""
 RIDGE = 0.01
 """Ridge of the linear part, share of the variance of an input."""
+GROWTH = Growth(trees=25, rate=0.2, leaves=8, bins=32, ridge=5.0)
+"""Few small trees: what more of them add is less than a cause is judged by."""
 FEW = 60
 """Samples below which nothing is trained."""
 ENERGY = 2
@@ -47,8 +49,7 @@ def loss_left(groups: Sequence[Array], signal: Array, run: NDArray[np.int64]) ->
     given = np.zeros((len(signal), 0))
     for group in groups:
         given = np.hstack([given, group])
-        with one_thread():
-            predicted = np.column_stack([_crossed(given, y, run) for y in left.T])
+        predicted = np.column_stack([_crossed(given, y, run) for y in left.T])
         gain = float(np.sum(left**2) - np.sum((left - predicted) ** 2)) / len(signal)
         if gain > 0.0:
             total, left = total - gain, left - predicted
@@ -75,7 +76,8 @@ def _crossed(inputs: Array, y: Array, run: NDArray[np.int64]) -> Array:
             chosen = telling(inputs[train], y[train])
             straight = linear(inputs[train], y[train])
             left = y[train] - straight(inputs[train])
-            out[test] = straight(inputs[test]) + _trees(inputs[train][:, chosen], left, inputs[test][:, chosen])
+            bent = boosted(inputs[train][:, chosen], left, inputs[test][:, chosen], GROWTH)
+            out[test] = straight(inputs[test]) + bent
     return out
 
 
@@ -102,12 +104,3 @@ def _told(column: Array, y: Array) -> float:
     cell = np.searchsorted(edges, column)
     count = np.bincount(cell, minlength=BINS)
     return float(np.sum(np.bincount(cell, y, minlength=BINS) ** 2 / np.maximum(count, 1)))
-
-
-def _trees(inputs: Array, y: Array, new: Array) -> Array:
-    from sklearn.ensemble import HistGradientBoostingRegressor
-
-    trees = HistGradientBoostingRegressor(
-        max_iter=25, learning_rate=0.2, max_leaf_nodes=8, max_bins=32, l2_regularization=5.0, early_stopping=False
-    )
-    return trees.fit(inputs, y).predict(new)
