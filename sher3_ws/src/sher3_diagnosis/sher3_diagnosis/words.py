@@ -60,6 +60,11 @@ def quantity(value: float | None, unit: str) -> str:
     return f"{digits} {prefix}{shown}"
 
 
+def rounded(value: float, unit: str) -> str:
+    """Return a number of which two digits are known, with an SI prefix and its unit."""
+    return quantity(float(f"{value:.2g}"), unit)
+
+
 def range_text(low: float | None, high: float | None, unit: str) -> str:
     """Return an interval, or why there is none."""
     if low is None or high is None:

@@ -153,6 +153,13 @@ def test_what_one_number_tells_is_told_once_and_a_share_has_its_size():
     wide = Parameter(value=1e-5, low=0.9e-5, high=1.1e-5, unit="m")
     backlash = FRICTION.model_copy(update={"effect": "backlash", "parameters": {"width": wide, "lost": wide}})
     assert cause_text(backlash) == "Backlash on delta 2, width 10 µm (9 µm … 11 µm)"
+
+
+def test_a_size_of_nothing_is_not_told():
+    at_once = FRICTION.model_copy(update={"parameters": {"displacement": Parameter(value=0.0, unit="m")}})
+    assert "displacement" not in cause_text(at_once)
+    choice = FRICTION.model_copy(update={"parameters": {"part": Parameter(value=0.0, unit="1")}})
+    assert cause_text(choice).endswith("part 0")
     share = {"relative": Parameter(value=0.146, low=0.145, high=0.147, unit="1")}
     cause = FRICTION.model_copy(update={"effect": "torque_constant", "parameters": share})
     assert headline(verdict("attributed", causes=[cause])) == "Torque constant on delta 2, 14.6 %: 98 % of the gap."

@@ -83,10 +83,11 @@ def cause_text(cause: Cause) -> str:
 
 
 def told(cause: Cause) -> dict[str, Parameter]:
-    """Return the parameters of a cause; of those with one value and interval, the first."""
+    """Return the parameters of a cause without sizes that are exactly zero; of those with one interval, the first."""
     out: dict[str, Parameter] = {}
     for name, p in cause.parameters.items():
-        if p.low is None or p not in out.values():
+        nothing = p.low is None and p.value == 0.0 and p.unit != "1"  # a friction that turns round at once
+        if not nothing and (p.low is None or p not in out.values()):
             out[name] = p
     return out
 

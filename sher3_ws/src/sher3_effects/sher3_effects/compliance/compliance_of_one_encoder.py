@@ -8,6 +8,7 @@ from typing import ClassVar
 import numpy as np
 from sher3_diagnosis.channel import Array
 from sher3_diagnosis.effect import Best, Shape, Signature, column
+from sher3_diagnosis.words import rounded
 
 from sher3_effects.behind_motor import BehindMotor
 from sher3_effects.compliance.transmission_compliance import TransmissionCompliance
@@ -60,7 +61,7 @@ class ComplianceBehindMotor(BehindMotor):
         if not paces:
             return "no spring would show"
         stiffness, (position, force) = hidden.mass * (2.0 * np.pi * max(paces)) ** 2, hidden.units
-        return f"a spring below {stiffness:.2g} {force}/{position} ({max(paces):.2g} Hz) would show"
+        return f"a spring below {rounded(stiffness, f'{force}/{position}')} ({max(paces):.2g} Hz) would show"
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
         """Return frequency and damping, the mass of the load and the stiffness of its spring."""

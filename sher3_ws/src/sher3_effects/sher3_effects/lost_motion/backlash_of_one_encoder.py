@@ -8,6 +8,7 @@ from typing import ClassVar
 import numpy as np
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.effect import Best, Shape, Signature, column
+from sher3_diagnosis.words import rounded
 
 from sher3_effects.behind_motor import BehindMotor
 from sher3_effects.friction.coulomb_friction import ServoStiction
@@ -61,7 +62,7 @@ class BacklashBehindMotor(BehindMotor):
     def least_shown(self, views: Sequence[AxisView], site: str, hidden: Hidden) -> str:
         """Return the smallest play of a load that rests in its gap."""
         widths = [s["width"] for s in self.shapes(views, site) if "braking" not in s and hidden.shows(s)]
-        return f"play above {min(widths):.2g} {hidden.units[0]} would show" if widths else "no play would show"
+        return f"play above {rounded(min(widths), hidden.units[0])} would show" if widths else "no play would show"
 
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
         """Return what the load's mass adds, and for one that rests in the gap what its friction adds."""
@@ -127,7 +128,7 @@ class BacklashBeforeEncoder(Page):
         count, travel = hidden.step, max(v.axis(site).travel for v in views)
         widths = np.geomspace(count, max(travel, 2.0 * count), self.TRIED)
         seen = [w for w in widths if hidden.shows({"force": 0.5 * float(w), "late": 0.0})]
-        least = f"play before it above {min(seen):.2g} {hidden.units[0]}" if seen else "no play before it"
+        least = f"play before it above {rounded(min(seen), hidden.units[0])}" if seen else "no play before it"
         return f"{least} would show"
 
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
