@@ -3,11 +3,13 @@
 Axes and servos are those of `sher3_chain/test/drawn_axes.py`: their friction sticks and slips, their integrator is
 Heun's; the diagnosis has other laws. Arms are those of `ladder_arms.py`, run by MuJoCo. Beside it, on the same
 records, stand two fits of the same dictionary: all its columns by least squares, and the lasso whose weight is chosen
-on the last third of the record; of an arm the first alone.
+on the last third of the record; of an arm the first alone. With `--sysid` axes and servos have mujoco.sysid, too, which
+fits those of these numbers that a MuJoCo model has (`drawn_sysid.py`).
 
     nice python bench/drawn_machines.py                                 # 50 axes and 50 servos
     nice python bench/drawn_machines.py --seeds 7:9 --kinds arm         # others
     nice python bench/drawn_machines.py --kept ladder.jsonl             # goes on where it was stopped
+    nice python bench/drawn_machines.py --seeds 1000:1004 --sysid       # mujoco.sysid beside them, axes and servos
 
 Printed are recall and precision of the causes, how many 95 % intervals hold the truth, and the share of verdicts with a
 wrong cause; then what was missed, apart where a fit that knows the true structure (`true_structure.py`) does not see it
@@ -21,7 +23,7 @@ import json
 import sys
 import time
 from collections import Counter
-from collections.abc import Collection, Mapping
+from collections.abc import Callable, Collection, Mapping
 from functools import partial
 from pathlib import Path
 
@@ -122,8 +124,8 @@ def _descend(z: np.ndarray, y: np.ndarray, weight: float) -> np.ndarray:
     return beta
 
 
-def by_fit(drawn: Drawn, how) -> set[str]:
-    """Return the causes that a fit names: whose column is a noticed share of the signal."""
+def by_fit(drawn: Drawn, how: Callable[[np.ndarray, np.ndarray], np.ndarray]) -> set[str]:
+    """Return the causes that a fit of columns and signal names: whose column is a noticed share of the signal."""
     x, y = columns_of(drawn)
     beta = how(x, y)
     names = [*COLUMNS] if x.shape[1] == 5 else [*COLUMNS[:4], "gravity_load", "gravity_load"]
@@ -145,7 +147,14 @@ def impossible(drawn: Drawn, verdict: Verdict) -> list[str]:
     return [*meaningless(verdict), *wide]
 
 
-def row_of_axis(draw, seed: int) -> dict:
+def by_sysid(drawn: Drawn) -> set[str]:
+    """Return what mujoco.sysid names, by the same share of the signal."""
+    from drawn_sysid import fitted
+
+    return by_fit(drawn, lambda x, y: fitted(drawn))
+
+
+def row_of_axis(draw, fits: Mapping[str, Callable[[Drawn], set[str]]], seed: int) -> dict:
     """Return what is kept of one axis or servo."""
     drawn = draw(seed)
     begun = time.perf_counter()
@@ -158,17 +167,19 @@ def row_of_axis(draw, seed: int) -> dict:
         "held": covered(drawn, verdict),
         "impossible": impossible(drawn, verdict),
         "sher3": [sorted(x) for x in named(verdict)],
-        "least squares": [[x] for x in sorted(by_fit(drawn, plain_fit))],
-        "lasso": [[x] for x in sorted(by_fit(drawn, lasso))],
+        **{name: [[x] for x in sorted(named_by(drawn))] for name, named_by in fits.items()},
     }
 
 
-ROWS = {
-    "axis": partial(row_of_axis, drawn_axis),
-    "servo": partial(row_of_axis, drawn_servo),
-    "arm": row_of_arm,
-}
-"""Kind of machine -> what draws one from a seed, diagnoses it and returns what is kept of it."""
+FITS = {"least squares": partial(by_fit, how=plain_fit), "lasso": partial(by_fit, how=lasso)}
+SYSID = "mujoco.sysid"
+
+
+def drawers(sysid: bool) -> dict[str, Callable[[int], dict]]:
+    """Return kind of machine -> what draws one from a seed, diagnoses it and returns what is kept of it."""
+    fits = FITS | ({SYSID: by_sysid} if sysid else {})
+    axes = {"axis": drawn_axis, "servo": drawn_servo}
+    return {**{kind: partial(row_of_axis, draw, fits) for kind, draw in axes.items()}, "arm": row_of_arm}
 
 
 class Score:
@@ -209,7 +220,7 @@ def share(count: int, of: int) -> str:
     return f"{count / of:.3f} ({low:.3f} .. {high:.3f}) of {of}"
 
 
-def rows_of(kind: str, seeds: range, kept: Path | None) -> list[dict]:
+def rows_of(kind: str, seeds: range, kept: Path | None, sysid: bool = False) -> list[dict]:
     """Return a row for each seed; those in the file are taken from there, others are added to it."""
     known: Mapping[int, dict] = {}
     if kept is not None and kept.exists():
@@ -217,7 +228,7 @@ def rows_of(kind: str, seeds: range, kept: Path | None) -> list[dict]:
         known = {row["seed"]: row for row in lines if row["kind"] == kind}
     out = []
     for seed in seeds:
-        row = known.get(seed) or {"kind": kind, "seed": seed, **ROWS[kind](seed)}
+        row = known.get(seed) or {"kind": kind, "seed": seed, **drawers(sysid)[kind](seed)}
         out.append(row)
         if kept is not None and seed not in known:
             with kept.open("a", encoding="utf-8") as file:
@@ -227,7 +238,7 @@ def rows_of(kind: str, seeds: range, kept: Path | None) -> list[dict]:
 
 def told(kind: str, rows: list[dict]) -> str:
     """Return the page of one kind of machine."""
-    scores = {name: Score() for name in ("sher3", "least squares", "lasso") if name in rows[0]}
+    scores = {name: Score() for name in ("sher3", *FITS, SYSID) if name in rows[0]}
     for row in rows:
         for name, score in scores.items():
             score.add(set(row["truth"]), [set(x) for x in row[name]], row["powerless"])
@@ -255,9 +266,10 @@ def main() -> None:
     parser.add_argument("--seeds", default="1000:1050")
     parser.add_argument("--kinds", default="axis,servo")
     parser.add_argument("--kept", type=Path, help="file of results, from which the bench goes on")
+    parser.add_argument("--sysid", action="store_true", help="fit axes and servos with mujoco.sysid, too")
     arguments = parser.parse_args()
     seeds = range(*map(int, arguments.seeds.split(":")))
-    found = {kind: rows_of(kind, seeds, arguments.kept) for kind in arguments.kinds.split(",")}
+    found = {kind: rows_of(kind, seeds, arguments.kept, arguments.sysid) for kind in arguments.kinds.split(",")}
     for kind, rows in found.items():
         print(told(kind, rows), flush=True)
     sys.exit(any(row["impossible"] for rows in found.values() for row in rows))

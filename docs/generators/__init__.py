@@ -5,7 +5,7 @@ from __future__ import annotations
 import shutil
 from pathlib import Path
 
-from generators import api, commands, effects, hazards, robot_file, targets, thresholds, topics
+from generators import api, commands, effects, front, hazards, robot_file, targets, thresholds, topics
 
 PAGES = {
     "hazards": hazards.page,
@@ -24,14 +24,15 @@ ORPHAN = "---\norphan: true\n---\n\n"
 
 
 def committed_pages(reference: Path) -> dict[Path, str]:
-    """Return the pages below the folder `reference` that are committed, by their paths."""
+    """Return the pages that are committed, by their paths: below the folder `reference`, and the front page."""
     generated = reference / "generated"
     found = {generated / f"{name}.md": page() for name, page in PAGES.items()}
     for folder, pages in FOLDERS.items():
         index, parts = pages()
         found[generated / f"{folder}.md"] = index
         found |= {generated / folder / f"{part}.md": ORPHAN + text for part, text in parts.items()}
-    return found
+    readme = reference.parents[1] / "README.md"
+    return found | {readme: front.page(reference / "told.md", readme)}
 
 
 def write_pages(reference: Path) -> None:

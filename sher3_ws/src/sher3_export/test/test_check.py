@@ -140,14 +140,20 @@ def test_an_arm_in_motion_is_run_from_its_own_model(tmp_path, monkeypatch):
     assert all(gap.after < 0.3 * gap.before for gap in found.gaps), found.gaps
 
 
-def test_motors_behind_a_coupling_are_refused_with_what_a_gear_does(tmp_path, monkeypatch):
-    """The causes are those of the motors: run on the joints they would be off by the gear."""
+@pytest.mark.parametrize("side", ["joints", "motors"])
+def test_friction_of_a_motor_behind_a_coupling_is_checked_on_the_joints(tmp_path, monkeypatch, side):
+    """The second motor moves with both joints; places and forces were recorded of the joints, or of the motors."""
     import lifts
 
-    machine = lifts.machine(tmp_path / "lift.urdf", coupling=[[1.0, 0.0], [0.0, 20.0]])
-    monkeypatch.setattr(checking, "open_case", lambda path: (machine, []))
-    with pytest.raises(ExportError, match="behind a coupling"):
-        check(verdict(cause("coulomb_friction", "swing", force=0.5, unit="N*m")), Path("case"), None)
+    travel = np.array([[1.0, 0.0], [1.0, 0.5]])
+    machine = lifts.machine(tmp_path / "lift.urdf", coupling=travel.tolist(), effort_of=side, position_of=side)
+    q, v, a = lifts.motion(seconds=8.0)
+    force = lifts.needed(q, v, a) + lifts.friction(v @ travel.T, coulomb=(0.0, 3.0)) @ travel
+    of = (q, force) if side == "joints" else (q @ travel.T, force @ np.linalg.inv(travel))
+    monkeypatch.setattr(checking, "open_case", lambda path: (machine, [lifts.run_of(*of)]))
+    answer = verdict(cause("coulomb_friction", "swing", force=3.0))
+    found = check(answer, Path("case"), None, motors={"swing": {"lift": 1.0, "swing": 0.5}})
+    assert all(gap.after < 0.3 * gap.before for gap in found.gaps), found.gaps
 
 
 def test_a_servo_of_the_model_gives_way_to_the_recorded_force(tmp_path, monkeypatch):

@@ -90,7 +90,6 @@ def test_ranges_of_motors_behind_a_coupling_say_whose_they_are(call, tmp_path):
         (("--to", "yaml", "--check", "."), "--to mjcf"),
         (("--joint", "a"), "AXIS=JOINT"),
         (("--motor", "a=j"), "MOTOR=JOINT:SHARE"),
-        (("--to", "mjcf", "--motor", "a=j:1", "--check", "."), "--motor, --check"),
         (("--out", "no/such/folder"), "--out"),
     ],
 )

@@ -20,7 +20,7 @@ from sher3_export.check.engine import Engine, compiled, copied, prepared
 from sher3_export.check.model_of import model_of, model_of_arm
 from sher3_export.check.recorded import Recorded, recorded
 from sher3_export.targets.mjcf_whole import read_mjcf
-from sher3_export.writing import Exported, export
+from sher3_export.writing import Exported, Motors, export
 from sher3_export.xml_file import write_xml
 
 LATE = ("delay", "lag", "limit", "servo", "servo_position", "servo_velocity", "servo_delay")
@@ -66,7 +66,13 @@ def nominal_model(case: Path, model: Path | None) -> tuple[Element, object, Sequ
     return model_of(machine.gather(runs)), machine, runs
 
 
-def check(verdict: Verdict, case: Path, model: Path | None, joints: Mapping[str, str] | None = None) -> Checked:
+def check(
+    verdict: Verdict,
+    case: Path,
+    model: Path | None,
+    joints: Mapping[str, str] | None = None,
+    motors: Motors | None = None,
+) -> Checked:
     """Write a verdict into a model and run both models on the recorded commands of a case.
 
     Args:
@@ -74,13 +80,14 @@ def check(verdict: Verdict, case: Path, model: Path | None, joints: Mapping[str,
         case: folder of a chain of axes.
         model: MJCF; None: made of the case's description.
         joints: axis -> joint of the model, where their names differ.
+        motors: how motors that move several joints travel, where the case has a `coupling`.
 
     Raises:
-        MachineError, ExportError: see `nominal_model`; MuJoCo is missing or refuses the model.
+        MachineError, ExportError: see `nominal_model`; motors are not stated; MuJoCo is missing or refuses the model.
     """
-    bench = bench_of(verdict, case, model, joints or {})
-    exported = export(verdict, "mjcf", copied(bench.original), joints)
-    engines = (bench.nominal, bench.compiled(export(verdict, "mjcf", copied(bench.root), joints).text))
+    bench = bench_of(verdict, case, model, joints or {}, motors)
+    exported = export(verdict, "mjcf", copied(bench.original), joints, motors)
+    engines = (bench.nominal, bench.compiled(export(verdict, "mjcf", copied(bench.root), joints, motors).text))
     errors = [[engine.run(record) for record in bench.records] for engine in engines]
     return Checked(exported, [gap_of(name, *([x[name] for x in found] for found in errors)) for name in bench.joints])
 
@@ -108,17 +115,24 @@ class Bench:
         return compiled(text, self.joints, self.nominal.actuator)
 
 
-def bench_of(verdict: Verdict, case: Path, model: Path | None, joints: Mapping[str, str]) -> Bench:
+def bench_of(
+    verdict: Verdict, case: Path, model: Path | None, joints: Mapping[str, str], motors: Motors | None = None
+) -> Bench:
     """Return the case of a verdict on its nominal model; raises as `check` does."""
     original, machine, runs = nominal_model(case, model)
-    return bench_on(verdict, original, machine, runs, joints)
+    return bench_on(verdict, original, machine, runs, joints, motors)
 
 
 def bench_on(
-    verdict: Verdict, original: Element, machine: object, runs: Sequence[Any], joints: Mapping[str, str]
+    verdict: Verdict,
+    original: Element,
+    machine: object,
+    runs: Sequence[Any],
+    joints: Mapping[str, str],
+    motors: Motors | None = None,
 ) -> Bench:
     """Return the runs of a machine on a nominal model; raises ExportError, MujocoMissing."""
-    late = any(c.constant in LATE for c in export(verdict, "yaml").applied)
+    late = any(c.constant in LATE for c in export(verdict, "yaml", motors=motors).applied)
     records = recorded(machine, runs, joints, late)
     names = list(records[0].tracks)
     root = prepared(original, records[0].period, records[0].tracks)

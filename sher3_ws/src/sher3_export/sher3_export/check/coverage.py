@@ -17,7 +17,7 @@ from sher3_machines import open_case
 from sher3_export.check.check import Bench, bench_of
 from sher3_export.check.engine import Engine, copied
 from sher3_export.ranges import SHARE, Ranges, shares_of, worlds_of
-from sher3_export.writing import export, put
+from sher3_export.writing import Motors, export, put
 
 DRAWS = 60
 """Models that are drawn: the band's ends are then its third lowest and highest."""
@@ -75,7 +75,9 @@ class Scatter(NamedTuple):
         return Scatter(more * self.speed, more * self.force, more * self.reading, min(1.0, 1.0 + factor))
 
 
-def covered(verdict: Verdict, case: Path, model: Path | None, joints: Mapping[str, str]) -> Covered:
+def covered(
+    verdict: Verdict, case: Path, model: Path | None, joints: Mapping[str, str], motors: Motors | None = None
+) -> Covered:
     """Return the ranges of a verdict with its rivals and its remainder, and the motion they cover.
 
     The remainder is as large as it must be for the ranges to cover their share of the first two thirds of each run;
@@ -84,10 +86,10 @@ def covered(verdict: Verdict, case: Path, model: Path | None, joints: Mapping[st
     Raises:
         MachineError, ExportError: see `check`.
     """
-    bench = bench_of(verdict, case, model, joints)
+    bench = bench_of(verdict, case, model, joints, motors)
     worlds = worlds_of(verdict, without_each(verdict, case))
-    ranges = Ranges(worlds, shares_of(verdict, worlds), identified=verdict.identified)
-    text = export(verdict, "mjcf", copied(bench.root), joints).text
+    ranges = Ranges(worlds, shares_of(verdict, worlds), identified=verdict.identified, motors=motors or {})
+    text = export(verdict, "mjcf", copied(bench.root), joints, motors).text
     found = windows_of(bench, text, ranges, joints)
     scatters = {joint: scatter_of(x, len(ranges.worlds) == 1) for joint, x in found.items()}
     shares = {joint: inside(x, scatters[joint])[x.held_out].mean() for joint, x in found.items()}
@@ -180,7 +182,7 @@ def inside(windows: Windows, scatter: Scatter) -> Mask:
 
 def drawn_model(bench: Bench, ranges: Ranges, joints: Mapping[str, str], rng: np.random.Generator) -> Engine:
     """Return a compiled model with drawn causes."""
-    drawn = put(ranges.draw(rng), "mjcf", copied(bench.root), joints, identified=ranges.identified)
+    drawn = put(ranges.draw(rng), "mjcf", copied(bench.root), joints, ranges.motors, ranges.identified)
     return bench.compiled(drawn[1](["drawn"]))
 
 

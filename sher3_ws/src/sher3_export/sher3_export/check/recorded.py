@@ -6,10 +6,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
 from sher3_chain.axes.machine import Axes
 from sher3_chain.joint.description import Axis
 from sher3_chain.joint.record import AxesRun
-from sher3_chain.manipulator.description import Joint
+from sher3_chain.manipulator.description import Joint, ManipulatorDescription
 from sher3_chain.manipulator.machine import Manipulator
 from sher3_common.numbers.smoothing import savitzky_golay
 from sher3_diagnosis.channel import Array
@@ -51,7 +52,7 @@ class Recorded:
 
 
 def recorded(machine: object, runs: Sequence[Any], joints: Mapping[str, str], late: bool) -> list[Recorded]:
-    """Return what was recorded of a chain of axes, or of an arm in motion.
+    """Return what was recorded of a chain of axes, or of an arm in motion; on its joints where a coupling is stated.
 
     Args:
         machine: of the case.
@@ -60,7 +61,7 @@ def recorded(machine: object, runs: Sequence[Any], joints: Mapping[str, str], la
         late: whether a cause acts between command and force, so that the command drives and not the measured effort.
 
     Raises:
-        ExportError: the case is of another kind, or its motors move several joints.
+        ExportError: the case is of another kind.
     """
     if not isinstance(machine, Axes | Manipulator):
         remedy = (
@@ -69,31 +70,44 @@ def recorded(machine: object, runs: Sequence[Any], joints: Mapping[str, str], la
         raise ExportError(
             "records of this kind of machine are not run in MuJoCo", value=type(machine).__name__, remedy=remedy
         )
-    if isinstance(machine, Manipulator) and machine.described.coupling is not None:
-        raise ExportError(
-            "motors behind a coupling are not run in MuJoCo: the causes are theirs, and its joints have drives of "
-            "their own",
-            value="coupling",
-            remedy="judge by the verdict's closure; of a gear of n alone, a joint has n times the dry friction of its "
-            "motor and n^2 times viscous friction and rotor",
-        )
-    axes = machine.described.chain
-    return [
-        Recorded(run.period, {joints.get(axis.name, axis.name): track_of(run, axis, late) for axis in axes})
-        for run in runs
-    ]
+    axes, coupled = machine.described.chain, isinstance(machine, Manipulator) and machine.described.coupling is not None
+    late = late and not coupled  # what a motor that moves several joints is late by no model can be given
+    out = []
+    for run in runs:
+        places = [run.signals[axis.name]["position"] for axis in axes]
+        drives = [drive_of(run.signals[axis.name], axis, late) for axis in axes]
+        if isinstance(machine, Manipulator) and coupled:
+            places, drives = on_joints(places, drives, machine.described)
+        each = zip(axes, places, drives, strict=True)
+        tracks = {joints.get(axis.name, axis.name): track_of(run, axis, q, drive, late) for axis, q, drive in each}
+        out.append(Recorded(run.period, tracks))
+    return out
 
 
-def track_of(run: AxesRun, axis: Axis, late: bool) -> Track:
-    """Return the track of one axis."""
+def on_joints(
+    places: Sequence[Array], drives: Sequence[Array | None], described: ManipulatorDescription
+) -> tuple[list[Array], list[Array | None]]:
+    """Return places and forces (n,) of the motors as those of the joints that they move, where they were recorded so.
+
+    A joint of which no force is known has none.
+    """
+    travel = np.asarray(described.coupling, dtype=float)
+    q = np.column_stack(places)
+    force = np.column_stack([np.full(len(q), np.nan) if x is None else x for x in drives])
+    q = q @ np.linalg.inv(travel).T if described.position_of == "motors" else q
+    force = force @ travel if described.effort_of == "motors" else force
+    return list(q.T), [None if np.isnan(x).any() else x for x in force.T]
+
+
+def track_of(run: AxesRun, axis: Axis, q: Array, drive: Array | None, late: bool) -> Track:
+    """Return the track of one axis, of its places and forces (n,)."""
     signals = run.signals[axis.name]
-    q = signals["position"]
     half = max(LEAST, round(SMOOTH / run.period))
     smooth = [savitzky_golay(q, 2 * half + 1, 2, k, run.period) for k in (0, 1)]
     load = signals.get("load")
     behind = None if load is None else load - q
     servo = axis.servo or (late and isinstance(axis, Joint) and axis.follows)
-    drive = signals["reference"] if servo else drive_of(signals, axis, late)
+    drive = signals["reference"] if servo else drive
     return Track(smooth[0], smooth[1], q if load is None else load, behind, drive, servo)
 
 

@@ -64,9 +64,6 @@ def export(
         target = out or Path(f"exported.{'yaml' if ranges else _suffix(to)}")
         check_writable([target])
         given, names, motors = read_verdict(verdict, bet), _names(joint or []), _motors(motor or [])
-        if motors and check:
-            remedy, both = "export alone", "--motor, --check"
-            raise RequestError("motors are not checked in MuJoCo", value=both, limit="one", remedy=remedy)
         data = _ranges(given, check, model, names, motors) if ranges else _model(given, to, check, model, names, motors)
         written(target, data.pop("text"))
         data = {"file": str(target), **data, "bets": bet_lines(verdict, bet)}
@@ -84,7 +81,7 @@ def _model(
         return _exported(written(given, to, model, names, motors), [])
     if to != "mjcf":
         raise RequestError("only MJCF is checked in MuJoCo", value=f"--to {to}", limit="mjcf", remedy="use --to mjcf")
-    found = checked(given, check, model, names)
+    found = checked(given, check, model, names, motors)
     return _exported(found.exported, found.gaps)
 
 
@@ -105,7 +102,7 @@ def _ranges(given: Any, check: Path | None, model: Path | None, names: dict[str,
 
     if check is None:
         return {"text": Ranges(worlds_of(given), motors=travels_of(given, motors)).text(), "coverage": {}}
-    found = covered(given, check, model, names)
+    found = covered(given, check, model, names, motors)
     return {"text": found.ranges.text(), "coverage": dict(found.coverage)}
 
 

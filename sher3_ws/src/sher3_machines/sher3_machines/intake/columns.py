@@ -53,12 +53,17 @@ def pick(column: Column, tables: Tables, run: str, finite: bool = True) -> Array
             value=f"{int(bad.sum())} of {len(x)} samples",
             remedy="cut the record before or after",
         )
-    x = x if column.within is None else np.clip(np.where(np.isinf(x), np.nan, x), *column.within)
-    x = x * scale(column, name, run) + column.offset
+    x = acting(x, column.within) * scale(column, name, run) + column.offset
     if column.signed_by not in (None, MOTION):
         other = Column(column=str(column.signed_by), unit="1", override=True)
         x = np.abs(x) * np.sign(pick_beside(x.shape, other, tables, run, finite))
     return _with_others(x, column, tables, run, finite)
+
+
+def acting(x: Array, within: tuple[float, float] | None) -> Array:
+    """Return what acts of recorded numbers (n, ...): of one beyond its bounds the bound, of an infinite one nothing."""
+    told = np.where(np.isinf(x), np.nan, x)
+    return told if within is None else np.clip(told, *within)
 
 
 def _with_others(x: Array, column: Column, tables: Tables, run: str, finite: bool) -> Array:

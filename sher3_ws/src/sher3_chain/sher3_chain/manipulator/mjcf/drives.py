@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from sher3_diagnosis.channel import Array
+from sher3_machines.intake.columns import acting
 
 from sher3_chain.manipulator.mjcf.bodies import SLIDE
 from sher3_chain.manipulator.mjcf.passive import AFFINE, FIXED, NONE, at_joint, is_passive
@@ -60,8 +61,7 @@ class Drive:
 
     def asked(self, control: Array) -> Array:
         """Return what a control (n,) asks for: a place, m or rad, or a force, N or N m; NaN where it is infinite."""
-        told = np.where(np.isinf(control), np.nan, control)
-        return self.factor * (told if self.within is None else np.clip(told, *self.within))
+        return self.factor * acting(control, self.within)
 
     def law(self, asked: Array, q: Array, v: Array) -> Array:
         """Return the joint's force (n,), N or N m, of what was asked, at a place and a speed; without its limit."""
