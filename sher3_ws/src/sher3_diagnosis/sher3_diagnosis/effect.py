@@ -107,7 +107,8 @@ class Effect:
             revolution, "load" a second encoder behind the transmission, "temperature" of the axis, "mass" its mass,
             "drive" the force it is driven with, "forces" what the motion needs of it: mass, weight or a model of the
             user's, "orientation" how a sensor is turned, "alone" that its only encoder is at the motor, "behind" that
-            it is at the load, "applied" a known force on the axis from outside.
+            it is at the load, "applied" a known force on the axis from outside, "held" that a servo is asked for a
+            place, "asked speed" that it is asked for a speed.
         seen_at: (stage, place) of the channels in which it must show to be looked for; "" is its own stage or its site.
         inputs: quantities the law may depend on, of `INPUTS`; none for an error that is constant.
         gives: parameters by name: those that its shape has are the shape's, the others its coefficients in their order.

@@ -25,6 +25,8 @@ FACTS = {
     "forces",
     "alone",
     "behind",
+    "held",
+    "asked speed",
     "orientation",
     "no_lead",
 }

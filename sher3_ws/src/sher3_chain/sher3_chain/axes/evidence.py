@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 
 from sher3_diagnosis.channel import Channel, Residual, Residuals
 from sher3_machines.errors import MachineError
-from sher3_machines.intake.fields import VELOCITIES
 from sher3_machines.thresholds import BLOCKS
 
 from sher3_chain.axes.floors import floors_of
@@ -111,9 +110,7 @@ def with_zeros(axis: Axis) -> list[Channel]:
 
     A speed adds up to a place from any zero on.
     """
-    asked = (axis.signals.position, axis.signals.reference)
-    summed = axis.servo and any(column is not None and column.unit in VELOCITIES for column in asked)
-    stages = ("transmission", "motor_mechanics") if summed else ("transmission",)
+    stages = ("transmission", "motor_mechanics") if axis.servo and axis.summed else ("transmission",)
     return [Channel(stage, axis.name) for stage in stages]
 
 

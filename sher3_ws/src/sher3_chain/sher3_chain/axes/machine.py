@@ -209,6 +209,8 @@ def facts_of(axis: Axis) -> set[str]:
         "applied": axis.signals.applied is not None,
         "mass": isinstance(axis.mass, float),
         "drive": not axis.free,
+        "held": axis.servo and not axis.summed,
+        "asked speed": axis.servo and axis.summed,
         "forces": isinstance(axis.mass, float) or axis.gravity != Gravity() or axis.signals.nominal_effort is not None,
     }
     return {fact for fact, is_known in known.items() if is_known}

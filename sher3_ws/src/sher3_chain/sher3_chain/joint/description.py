@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
-from sher3_machines.intake.fields import Clock, Column, Strict
+from sher3_machines.intake.fields import VELOCITIES, Clock, Column, Strict
 
 from sher3_chain.joint.conditions import Tagged
 from sher3_chain.joint.own_unit import OWN_UNITS, TOLD
@@ -123,6 +123,12 @@ class Axis(Strict):
     def servo(self) -> bool:
         """Whether the axis is a position servo: forces are then told in units of its stiffness."""
         return self.command_law.kind == "position"
+
+    @property
+    def summed(self) -> bool:
+        """Whether a speed was recorded or asked in place of a place, which is then its sum."""
+        asked = (self.signals.position, self.signals.reference)
+        return any(column is not None and column.unit in VELOCITIES for column in asked)
 
     @property
     def tracked(self) -> Axis | None:

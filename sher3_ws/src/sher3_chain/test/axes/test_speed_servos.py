@@ -40,6 +40,51 @@ def test_a_lag_is_found_whatever_the_positions_count_from(zeros):
     assert late == pytest.approx(LAG, rel=0.1)
 
 
+WHEEL = {**SPEED, "signals": {name: {"column": name, "unit": "rad/s"} for name in ("position", "reference")}}
+
+
+def wheel(seed, integral, most=1e9, steady=False):
+    """A wheel with viscous friction under a PI loop of its speed, at 100 Hz, read in counts of 0.1 rad/s."""
+    rng, t = np.random.default_rng(seed), 0.01 * np.arange(3000)
+    levels = rng.uniform(2.0, 12.0, 12) * np.where(np.arange(12) % 3 == 2, -1.0, 1.0)
+    asked = np.repeat([10.0] * 12 if steady else levels, 250)
+    speed = total = 0.0
+    read = np.empty(len(t))
+    for k, want in enumerate(asked):
+        read[k] = speed
+        drive = np.clip(4.0 * (want - speed) + total, -most, most)
+        total += 0.01 * integral * (want - speed) * (abs(drive) < most)
+        speed += 0.01 * (drive - 0.8 * speed) / 0.15
+    read = np.round((read + 0.1 * rng.normal(size=len(t))) / 0.1) * 0.1
+    return {"t": t, "position": read, "reference": asked}
+
+
+@pytest.mark.parametrize("steady", [False, True])
+@pytest.mark.parametrize("seed", range(3))
+def test_a_loop_without_an_integral_part_stays_behind_by_a_share(seed, steady):
+    """4 / 4.8 of what is asked: 16.7 % less, at one speed or at twelve."""
+    run = axes_run("run", wheel(seed, 0.0, steady=steady), described(**WHEEL))
+    causes = {c.effect: c for c in diagnose(machine(**WHEEL), [run]).verdict.causes}
+    share = causes["reference_scale"].parameters["relative"]
+    assert share.value == pytest.approx(-0.8 / 4.8, rel=0.03)
+    assert causes.keys() <= {"reference_scale", "drive_lag"}
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_loop_with_one_has_no_share(seed):
+    run = axes_run("run", wheel(seed, 20.0), described(**WHEEL))
+    assert not {"reference_scale", "speed_limit"} & {c.effect for c in diagnose(machine(**WHEEL), [run]).verdict.causes}
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_wheel_that_reaches_slow_speeds_alone_has_a_top_speed(seed):
+    """A drive of 5.6 N m at most turns it at 7 rad/s; what it misses it does not catch up with."""
+    run = axes_run("run", wheel(seed, 20.0, most=5.6), described(**WHEEL))
+    causes = {c.effect: c for c in diagnose(machine(**WHEEL), [run]).verdict.causes}
+    assert causes["speed_limit"].parameters["limit"].value == pytest.approx(7.0, rel=0.05)
+    assert "reference_scale" not in causes
+
+
 @pytest.mark.parametrize("fastest", [3.0, 900.0])
 def test_the_sum_of_a_speed_has_no_counter(fastest):
     """A wheel at 200 Hz that turns by more than half a turn a sample, or hardly: its place is the sum, to the end."""

@@ -78,6 +78,7 @@ class ServoStiction(CoulombFriction):
     """
 
     kinds = ("servo",)
+    needs = ("held",)
     plain = True
     indistinct = ("command_deadband",)
     explanation = (

@@ -121,6 +121,7 @@ class ServoSag(GravityOnAxis):
     """A position servo that hangs behind its reference under a weight: the load over the servo's stiffness."""
 
     kinds = ("servo",)
+    needs = ("held",)
     explanation = "The axis rests beside its reference, as a spring does under a weight."
     siblings = {"coulomb_friction": "the side it rests on changes with the direction it came from"}
     units = {"force": "m", "relative": "m/N", "arm": "m", "hanging": "m"}

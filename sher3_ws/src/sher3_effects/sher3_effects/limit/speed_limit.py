@@ -18,7 +18,7 @@ class SpeedLimit(Page):
 
     id, family, stage = "speed_limit", "limit", "motor_mechanics"
     inputs = ("command", "velocity")
-    kinds = ("servo",)
+    kinds, needs = ("servo",), ("held",)
     best = Best("steps", "large and small steps separate limits from lags")
     extends = ("drive_lag",)
     leaves_out = "how it speeds up and slows down"
