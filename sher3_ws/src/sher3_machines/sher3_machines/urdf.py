@@ -90,4 +90,4 @@ def read_urdf(path: Path) -> Urdf:
     try:
         return urdf_of(read_text(path, MAX_BYTES), str(path))
     except FileError as error:
-        raise MachineError(f"{path}: cannot be read", value=str(error), remedy="give a URDF file") from error
+        raise MachineError(error.what, value=error.value, limit=error.limit, remedy=error.remedy) from error

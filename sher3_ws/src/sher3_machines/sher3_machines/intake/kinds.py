@@ -66,7 +66,7 @@ def load_description(path: Path) -> Description:
     try:
         data = read_yaml(path)
     except FileError as error:
-        raise MachineError(f"{path}: cannot be read", value=str(error), remedy="give a YAML description") from error
+        raise MachineError(error.what, value=error.value, limit=error.limit, remedy=error.remedy) from error
     name = data.get("kind")
     kind = kinds().get(name) if isinstance(name, str) else None
     if kind is None:

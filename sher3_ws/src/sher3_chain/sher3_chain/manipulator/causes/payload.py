@@ -37,7 +37,7 @@ def payloads(evidence: ArmMotionEvidence, candidates: Candidates) -> list[Fit]:
         if trials:
             best = min(trials, key=cost)
             worth = NEEDED * best.terms[-1].width + law_error(evidence, best, plain=True)
-            found += [best] if base.total - best.total > worth and shows_on_enough(base, best) else []
+            found += [best] if base.total - best.total > worth and shows_on_enough(evidence, base, best) else []
     return found
 
 
@@ -59,17 +59,13 @@ def beside(evidence: ArmMotionEvidence, candidates: Candidates) -> list[Term]:
     return plain
 
 
-def shows_on_enough(base: Fit, best: Fit) -> bool:
+def shows_on_enough(evidence: ArmMotionEvidence, base: Fit, best: Fit) -> bool:
     """Return whether a payload, the last term of `best`, is seen by two of the joints that carry it, or the only one.
 
     A payload that one joint of several feels is an inertia or a force of that joint.
     """
-    carrying = best.terms[-1].channels
-    gains = dict.fromkeys(carrying, 0.0)
-    for (run, channel), loss in best.loss.items():
-        if channel in gains:
-            gains[channel] += base.loss.get((run, channel), loss) - loss
-    return sum(gain > NEEDED for gain in gains.values()) >= min(2, len(carrying))
+    gains = [evidence.loss(c, base) - evidence.loss(c, best) for c in best.terms[-1].channels]
+    return sum(gain > NEEDED for gain in gains) >= min(2, len(gains))
 
 
 def closes(evidence: ArmMotionEvidence, loaded: Fit) -> bool:
@@ -78,8 +74,7 @@ def closes(evidence: ArmMotionEvidence, loaded: Fit) -> bool:
     Beside large gaps of other causes that is a small one: it is also worth a name where it takes more than all leave.
     """
     first = len(evidence.nuisance)
-    carrying = loaded.terms[first].channels
-    gap = sum(loss for (_, channel), loss in evidence.null().loss.items() if channel in carrying)
+    gap = sum(evidence.loss(channel, evidence.null()) for channel in loaded.terms[first].channels)
     rest = max(0.0, loaded.total - sum(evidence.data.samples.values()))
     return without_term(evidence, loaded, first).total - loaded.total > min(LEAST_CLOSURE * gap, rest)
 
