@@ -16,13 +16,12 @@ from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
-from sher3_challenge.calibration.drawn import GAP, sized
+from sher3_challenge.calibration.drawn import plan_of
 from sher3_challenge.calibration.held_out import item_of
 from sher3_challenge.calibration.labels import answer_of
 from sher3_challenge.calibration.observe import Observation, observed_on, stored
-from sher3_challenge.cases.plan import RUN_SPACING_NS, CasePlan, draw_plan
+from sher3_challenge.cases.plan import RUN_SPACING_NS, CasePlan
 from sher3_challenge.plants.plant import RunPlan
-from sher3_challenge.plants.registry import truth_plant
 from sher3_common.numbers.shares import wilson
 from sher3_description import Robot, load_robot
 from sher3_diagnosis.finding import LIBRARY
@@ -69,7 +68,7 @@ def again(seen: Observation, effect: str, robot: Robot) -> list[Observation]:
     """Return the observation of the same robot with more runs."""
     seed = int(seen.case.split("_")[1])
     kind = seen.truth["kind"] if seen.truth["kind"] != "withheld" else "single"
-    plan, _ = sized(draw_plan(robot, seed, truth_plant(seen.plant), kind=kind, gap=GAP), robot)
+    plan, _ = plan_of(robot, seen.plant, kind, seed)
     plan = replace(plan, runs=further(plan, effect, robot))
     made, first = plan.plant(robot), min(r.stamp for r in plan.runs)
     runs = [

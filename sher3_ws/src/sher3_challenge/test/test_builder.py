@@ -9,7 +9,7 @@ from sher3_bags import read_case
 from sher3_challenge.calibration.held_out import judged_by
 from sher3_challenge.calibration.observe import observations
 from sher3_challenge.cases.builder import Request, build_case, withhold
-from sher3_challenge.cases.calibrate import Calibration, calibrated
+from sher3_challenge.cases.calibrate import Calibration, sized
 from sher3_challenge.cases.plan import KINDS, RECIPES, draw_plan
 from sher3_challenge.cases.seal import CASES, LABELS, MANIFEST, check_seal, hashes
 from sher3_challenge.errors import ChallengeError
@@ -69,14 +69,14 @@ def test_rivals_of_an_under_excited_case_are_of_different_families():
 @pytest.mark.parametrize(("name", "aim"), [("coulomb_friction", 5.0), ("tool_offset", 12.0)])
 def test_calibration_meets_its_aim(name, aim):
     plan = draw_plan(ROBOT, 21, LUMPED, kind="single", effect=name, gap=(aim, aim * 1.001))
-    done = calibrated(plan, ROBOT)
+    done, _ = sized(plan, ROBOT)
     assert Calibration(ROBOT, plan).ratio(done.faults[0]) == pytest.approx(aim, rel=0.15)
 
 
 def test_exact_stages_and_healthy_cases_need_no_calibration():
     for kind, effect in (("healthy", None), ("single", "command_delay")):
         plan = draw_plan(ROBOT, 8, LUMPED, kind=kind, effect=effect)
-        assert calibrated(plan, ROBOT) is plan
+        assert sized(plan, ROBOT) == (plan, {})
 
 
 def test_oracle_counts_in_mean_squares():

@@ -10,13 +10,12 @@ from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from itertools import count
 from pathlib import Path
-from typing import Any
 
 from sher3_description import Robot, load_robot
 
 from sher3_challenge.calibration.observe import Observation, keep, observed, stored
 from sher3_challenge.cases.builder import described
-from sher3_challenge.cases.calibrate import Calibration
+from sher3_challenge.cases.calibrate import sized
 from sher3_challenge.cases.plan import CasePlan, draw_plan
 from sher3_challenge.plants.registry import truth_plant
 
@@ -41,30 +40,26 @@ def draw(plants: Iterable[str], seeds: Iterable[int], kept: Path) -> Iterator[li
         yield found
 
 
+def plan_of(robot: Robot, plant: str, kind: str, seed: int) -> tuple[CasePlan, dict[str, float]]:
+    """Return the plan of one case with its faults brought to size, and their gap over floor by stage and actuator."""
+    return sized(draw_plan(robot, seed, truth_plant(plant), kind=kind, gap=GAP), robot, ITERATIONS, EXCITATIONS)
+
+
 def evidence_of(robot: Robot, plant: str, kind: str, seed: int) -> list[Observation]:
     """Draw, simulate and diagnose one case."""
     from sher3_gap.case.loading import signals_of
 
-    plan, reached = sized(draw_plan(robot, seed, truth_plant(plant), kind=kind, gap=GAP), robot)
+    plan, reached = plan_of(robot, plant, kind, seed)
     made = plan.plant(robot)
     runs = [made.run(run) for run in plan.runs]
-    truth = {**described(plan, made), "oracle": reached, "tip": None}
+    truth = {
+        **described(plan, made),
+        "oracle": {at: {"gap_over_floor": x or None} for at, x in reached.items()},
+        "tip": None,
+    }
     first = min(run.stamp for run in plan.runs)
     signals = [
         replace(signals_of(run, robot, f"run {i}"), session_time=(p.stamp - first) * 1e-9)
         for i, (run, p) in enumerate(zip(runs, plan.runs, strict=True))
     ]
     return observed(plant, plan.name, truth, signals, robot)
-
-
-def sized(plan: CasePlan, robot: Robot) -> tuple[CasePlan, dict[str, dict[str, Any]]]:
-    """Return the plan with its final magnitudes, and gap over floor by stage and actuator."""
-    if not any(plan.targets):
-        return plan, {}
-    calibration = Calibration(robot, plan, ITERATIONS, EXCITATIONS)
-    faults, reached = [], {}
-    for fault, target in zip(plan.faults, plan.targets, strict=True):
-        found, ratio = calibration.fit(fault, target) if target else (fault, 0.0)
-        faults.append(found)
-        reached[f"{fault.kind.stage}/{fault.actuator}"] = {"gap_over_floor": ratio or None}
-    return replace(plan, faults=tuple(faults)), reached

@@ -11,12 +11,12 @@ from sher3_bags import Run, write_case
 from sher3_description import Robot, load_robot
 
 from sher3_challenge.cases.calibrate import (
-    calibrated,
     distinct_runs,
     ideal_residuals,
     nominal_residuals,
     reference_floor,
     residual_keys,
+    sized,
 )
 from sher3_challenge.cases.plan import TARGETS, CasePlan, draw_plan
 from sher3_challenge.oracle.oracle import StageOracle, excess, floors, oracle, stage_residuals
@@ -57,7 +57,7 @@ def build_case(request: Request, cases: Path, robot: Robot | None = None) -> dic
     robot = robot or load_robot()
     truth_of = truth_plant(request.plant)
     drawn = draw_plan(robot, request.seed, truth_of, kind=request.kind, effect=request.effect, gap=request.gap)
-    plan = calibrated(drawn, robot)
+    plan, _ = sized(drawn, robot)
     plant = plan.plant(robot)
     runs = [plant.run(run) for run in plan.runs]
     truth = label(plan, plant, runs)

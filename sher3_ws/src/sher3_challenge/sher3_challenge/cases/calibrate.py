@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 
-from sher3_description import ACTUATORS, Robot, load_robot
+from sher3_description import ACTUATORS, Robot
 from sher3_description.contract import REFERENCE_TEMPERATURE
 from sher3_gap.excitation import excite
 
@@ -107,14 +107,20 @@ class Calibration:
         return best, reached
 
 
-def calibrated(plan: CasePlan, robot: Robot | None = None) -> CasePlan:
-    """Return the plan with final magnitudes."""
-    robot = robot or load_robot()
+def sized(
+    plan: CasePlan, robot: Robot, iterations: int = ITERATIONS, excitations: int | None = None
+) -> tuple[CasePlan, dict[str, float]]:
+    """Return the plan with final magnitudes, and what each fault reached: stage and actuator -> gap over floor.
+
+    Args:
+        plan: with the faults at their start; where no fault has a target it is final.
+        robot: nominal robot.
+        iterations: as in `Calibration`.
+        excitations: as in `Calibration`.
+    """
     if not any(plan.targets):
-        return plan
-    calibration = Calibration(robot, plan)
-    faults = tuple(
-        calibration.fit(fault, target)[0] if target else fault
-        for fault, target in zip(plan.faults, plan.targets, strict=True)
-    )
-    return replace(plan, faults=faults)
+        return plan, {}
+    calibration = Calibration(robot, plan, iterations, excitations)
+    found = [calibration.fit(f, t) if t else (f, 0.0) for f, t in zip(plan.faults, plan.targets, strict=True)]
+    reached = {f"{fault.kind.stage}/{fault.actuator}": ratio for fault, ratio in found}
+    return replace(plan, faults=tuple(fault for fault, _ in found)), reached
