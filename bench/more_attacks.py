@@ -14,12 +14,13 @@ from itertools import count
 from random import Random
 
 import numpy as np
-from attacks import LEGS, PERIOD, Case, goes, results
+from attacks import LEGS, PERIOD, TICK, Case, goes, results
 from sher3_common.operating_state import StateCommand
 from sher3_drivers.bus.frame import iter_frames, pack_frames
 from sher3_drivers.mock.drive import AxisReading
 from sher3_drivers.sensor.device import WrenchRecord
 from sher3_faults.requests import make_request
+from sher3_runtime.ports import ports
 from sher3_safety.rows.row import FIRM, IDLE, LIMIT, MOVING, NOBODY, SIDEWAYS
 from sher3_safety.runs.operator_node import tare
 from sher3_safety.runs.stepped import MatrixRun
@@ -89,6 +90,25 @@ def beside(component: str, fault: str, axis: str = LEGS[0], **parameters: float)
     return attack
 
 
+def seldom(name: str, every: int, axis: str) -> Attack:
+    """Return an attack in which a process runs in one tick of some, while an axis goes."""
+
+    def attack(run: MatrixRun) -> None:
+        node, begun, held = getattr(run.rig, name), ports(run.operator).ticks[0].callback, [False]
+
+        def begin(stamp: int) -> None:
+            begun(stamp)
+            holds = stamp // TICK % every != 0
+            if holds != held[0]:
+                (run.graph.pause if holds else run.graph.resume)(node)
+                held[0] = holds
+
+        ports(run.operator).ticks[0].callback = begin  # type: ignore[method-assign]
+        goes(run, CREEP, axis)
+
+    return attack
+
+
 def pedal_at(travel: float) -> Attack:
     """Return an attack of a pedal that hangs at a travel under a firm hand."""
 
@@ -146,15 +166,11 @@ CASES = (
     Case("y and x of the force sensor exchanged", turned(lambda w: (w[1], w[0], *w[2:])), SIDEWAYS),
     Case("force sensor in another unit, 4.448 times", turned(lambda w: tuple(4.448 * x for x in w)), FIRM),
     Case("force sensor ends at 0.5 N", turned(saturated), LIMIT),
-    Case("counter of the force sensor backwards, the hand leaves", backwards, MOVING),
-    Case("each force beside one 40 ms old, the hand leaves", old_and_new, MOVING),
+    Case("counter of the force sensor backwards, the hand leaves", backwards, MOVING, leaves=True),
+    Case("each force beside one 40 ms old, the hand leaves", old_and_new, MOVING, leaves=True),
     Case("reports of channel 0 cut to half, delta_1 at 1 mm/s", cut_frames, IDLE),
-    Case(
-        "supervisor looks in one tick of ten, delta_1 at 1 mm/s", beside("process.supervisor", "slow", every=10.0), IDLE
-    ),
-    Case(
-        "kinematics in one tick of four, tilt at 1 mm/s", beside("process.kinematics", "slow", "tilt", every=4.0), IDLE
-    ),
+    Case("supervisor runs in one tick of ten, delta_1 at 1 mm/s", seldom("supervisor", 10, LEGS[0]), IDLE, last=True),
+    Case("kinematics runs in one tick of four, tilt at 1 mm/s", seldom("kinematics", 4, "tilt"), IDLE, last=True),
     Case("pedal hangs at 3 %, hand of 6 N", pedal_at(0.03), IDLE),
     Case("pedal chatters, delta_1 at 1 mm/s", beside("pedal", "chatter", items=2.0, code=1.0), MOVING),
     Case("disable and enable in turn, delta_1 at 1 mm/s", spam(StateCommand.DISABLE, StateCommand.ENABLE), IDLE),

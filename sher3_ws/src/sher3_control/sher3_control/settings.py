@@ -200,6 +200,8 @@ class SupervisorSettings(Settings):
         hand_astray: difference of a leg's speed from its command [m/s] beyond which nothing is compared.
         hand_blind: how long the law may move the tip while nothing is compared [s]; a hand that hits the tool takes
             66 ms of it.
+        hand_apart: how long the axes may move while no tick has all that is compared [s], as when sensor and drives are
+            heard by turns: as long as a supervisor may be silent.
         hand_gap: longest time from one tick to the next after which the legs' motion is known [s].
         hand_memory: time constant with which slow changes of it are taken for granted [s].
         hand_settling: how long after enabling all of it is [s]; drives take up a hand of 6 N in half of it.
@@ -234,6 +236,7 @@ class SupervisorSettings(Settings):
     hand_share: Fraction = 0.12
     hand_astray: Annotated[Number, Field(gt=0.0, le=0.05)] = 5e-4
     hand_blind: Annotated[Number, Field(gt=0.0, le=1.0)] = 0.12
+    hand_apart: Seconds = 0.030
     hand_gap: Annotated[Number, Field(ge=1e-3, le=1.0)] = 0.01
     hand_memory: Annotated[Number, Field(ge=1e-2, le=100.0)] = 2.0
     hand_settling: Seconds = 0.36

@@ -334,3 +334,20 @@ def test_numbers_that_are_none_are_not_judged(detector):
     detector.feed(10**10, (np.nan,) * 6, (0.0,) * 5, (0.0,) * 5, STILL)
     detector.feed(10**10 + TICK, (0.0,) * 6, (0.0,) * 5, (np.nan,) * 5, STILL)
     assert detector.check(0) is None
+
+
+@pytest.mark.parametrize("compared", [True, False])
+def test_ticks_that_never_meet_stop_a_robot_that_moves(detector, compared):
+    """Sensor and drives that are heard by turns are never compared: 30 ms of motion, from the last tick that was."""
+    if compared:
+        detector.feed(0, (0.0,) * 6, STILL, STILL, STILL)
+    objected = []
+    for stamp in range(0, 40_000_000, TICK):
+        detector.move(stamp)
+        if (found := detector.check(stamp)) is not None:
+            objected.append((stamp, found.unit))
+    stamp, unit = objected[0]
+    assert 30_000_000 <= stamp <= 32_000_000 and unit == "s"
+    detector.begin()
+    detector.move(10**9)
+    assert detector.check(10**9) is None

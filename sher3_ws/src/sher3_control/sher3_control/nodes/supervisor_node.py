@@ -42,11 +42,11 @@ from sher3_control.supervision.leg_residual import LegDetector, leg_residual
 from sher3_control.supervision.supervisor import Supervisor
 from sher3_control.supervision.zero import ToolContact, ZeroDetector
 
-PEDAL = "pedal/measured"
+PEDAL, COMMAND = "pedal/measured", "servo_jv"
 STREAMS = {
     "force/measured_cf": (Reason.WRENCH_MISSING, Reason.WRENCH_STALE),
     "measured_js": (Reason.JOINTS_MISSING, Reason.JOINTS_STALE),
-    "servo_jv": (Reason.COMMAND_MISSING, Reason.COMMAND_STALE),
+    COMMAND: (Reason.COMMAND_MISSING, Reason.COMMAND_STALE),
     PEDAL: (Reason.PEDAL_MISSING, Reason.PEDAL_STALE),
 }
 """Watched streams, each with the reason when no sample ever came and when it fell silent."""
@@ -59,7 +59,7 @@ STEERING = ("servo_cv",)
 BESIDE = ("drives/measured_js", "drives/setpoint_jv", "supervisor/heartbeat")
 OWN = (*STREAMS, OWN_STATE, *SAID, TIP, *STEERING, *BESIDE)
 """Topics that only the robot itself publishes: those that are watched, those that steer it, and the others."""
-FELT = ("force/measured_cf", "measured_js", "drives/measured_js", "servo_jv")
+FELT = ("force/measured_cf", "measured_js", "drives/measured_js", COMMAND)
 """Streams that tell of a hand; all that is watched but the pedal is among them."""
 TOUCHED = FELT[:2]
 """Those that tell what touches the tool, whether the drives have power or not."""
@@ -131,6 +131,7 @@ class SupervisorNode(Node):
         heard = FELT if self._hand is not None else [name for name in FELT if name in STREAMS]
         self._felt = [(name, gathered(self, name, DEPTH)) for name in heard]
         self._command: Vector = (0.0,) * len(ACTUATORS)
+        self._moved = NO_STAMP
         self._take_tip = latest(self, TIP)
         subscribe(self, PEDAL, self.on_pedal)
         self._take_pedal = by_ring(self, PEDAL, DEPTH)
@@ -158,6 +159,8 @@ class SupervisorNode(Node):
                     self._silence[name].last = sample.stamp
                 if name == "measured_js":
                     self._joints = sample
+                elif name == COMMAND and any(sample.velocity or ()):
+                    self._moved = sample.stamp
                 if self._hand is not None:
                     self._ticks.put(name, sample)
                 if self._hand is not None and name in TOUCHED:
@@ -178,6 +181,7 @@ class SupervisorNode(Node):
         powered, resting = self.supervisor.state in POWERED, self.supervisor.state is OperatingState.DISABLED
         if not powered:
             self._hand.begin()
+            self._moved = NO_STAMP
         if not resting:
             self._zero.begin()
         for wrench, joints in self._touched.take():
@@ -188,6 +192,8 @@ class SupervisorNode(Node):
                 contact = self._contact.at_tip(wrench.wrench, joints.position)
                 self._hand.feed(wrench.stamp, contact, joints.position, forces.effort, self._command)
             self._command = command.velocity or self._command
+        if powered and self._moved != NO_STAMP:
+            self._hand.move(self._moved)
 
     def _count_publishers(self, *beside: str) -> None:
         """Count the living publishers of the streams that move the robot, and of the streams `beside`.

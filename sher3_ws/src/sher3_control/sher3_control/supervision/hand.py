@@ -106,6 +106,10 @@ class HandDetector(PlainDetector):
 
     def begin(self) -> None:
         """Forget what was felt: the drives have just got their power, or are about to."""
+        self._met = -1
+        self._forget()
+
+    def _forget(self) -> None:
         self._felt: Array | None = None
         self._since, self._astray, self._begun, self._settled, self._blind = -1, -1, False, False, 0.0
         self._quick, self._slow = np.zeros((len(self._lags) - 1, AXES)), np.zeros(AXES)
@@ -129,9 +133,10 @@ class HandDetector(PlainDetector):
             command: velocities that the axes were told a tick before (5,), m/s and rad/s.
         """
         joints, told, touch, efforts = map(np.array, (q, command, contact, effort))
+        self._met = stamp
         span = seconds(stamp - self._last)
         if not math.isfinite(sum(contact) + sum(effort)):
-            self.begin()
+            self._forget()
             return
         if self._felt is None or not 0.0 < span <= self._settings.hand_gap:
             self._last = stamp
@@ -212,6 +217,14 @@ class HandDetector(PlainDetector):
         self._alone = NOWHERE if (sizes(hand) > settings.hand_least).any() else self._alone + moved
         travel = float(np.linalg.norm(self._alone.reshape(2, 3), axis=1).sum())
         self._add(1e6 * travel, 1e6 * settings.hand_travel, "um")
+
+    def move(self, stamp: int) -> None:
+        """Take note that the axes were told to move at `stamp` [ns], whether that tick could be compared or not."""
+        if self._met < 0:
+            self._met = stamp
+        if (apart := seconds(stamp - self._met)) > self._settings.hand_gap:
+            self._add(apart, self._settings.hand_apart, "s")
+            self._keep()
 
     def _stray(self, felt: Array, held: Array, span: float) -> None:
         """Judge coarsely what a straying leg's drive holds and the sensor does not feel."""

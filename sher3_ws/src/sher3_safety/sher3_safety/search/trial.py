@@ -63,16 +63,17 @@ def _try(run: MatrixRun, draw: Draw) -> Found:
     return Found(draw, *off_its_way(run, begin, WATCHED))
 
 
-def off_its_way(run: MatrixRun, begin: Callable[[], None], ticks: int) -> tuple[float, str]:
+def off_its_way(run: MatrixRun, begin: Callable[[], None], ticks: int, leaves: bool = False) -> tuple[float, str]:
     """Return how far the tip gets off its way [m] within some ticks of what begins, and the driver's first reason.
 
-    Its way is straight on, at the speed before, until the driver is told zero or stops.
+    Its way is straight on, at the speed before, until the driver is told zero or stops; where the hand `leaves`, the
+    way ends there.
     """
     plant, driver = run.rig.plant.plant, run.rig.motor_driver.driver
     before = plant.true_tip[1]
     run.graph.step(BEFORE)
     way, farthest = np.array(plant.true_tip[1]), 0.0
-    step = (way - before) / BEFORE
+    step = (way - before) / BEFORE * (not leaves)
     begin()
     going = _going(driver)
     for _ in run.graph.steps(ticks):
