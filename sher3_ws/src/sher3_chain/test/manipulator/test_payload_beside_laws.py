@@ -23,3 +23,22 @@ def test_a_payload_a_spring_and_a_rotor_are_told_together():
     assert found["payload_mass", "body3"]["x"].value == pytest.approx(0.25, rel=0.05)
     assert found["spring_torque", "shoulder"]["stiffness"].value == pytest.approx(2.0, rel=0.05)
     assert found["rotor_inertia", "elbow"]["inertia"].value == pytest.approx(0.018, rel=0.1)
+
+
+@pytest.mark.parametrize(("stiffness", "rotor"), [(2.5, 0.06), (2.4, 0.0)])
+def test_a_payload_far_from_its_joint_is_no_heavier_link_beside_a_rotor(stiffness, rotor):
+    """Two joints; the weight of the link is held up. About its joint such a payload needs a rotor below zero, and the
+    first joint feels it as a rotor alone: a heavier link with a rotor, or a cable, stood in its place.
+    """
+    rng = np.random.default_rng([9415, 3])
+    xml = drawn_xml(rng, servo=True, joints=2, methods=["implicitfast"])
+    spec = mujoco.MjSpec.from_string(xml)
+    spec.joints[1].stiffness[0] += stiffness
+    spec.joints[0].armature += rotor
+    ball = {"type": mujoco.mjtGeom.mjGEOM_SPHERE, "size": [0.01, 0, 0], "mass": 0.21}
+    spec.bodies[-1].add_body(pos=[0.25, 0, 0]).add_geom(**ball, contype=0, conaffinity=0)
+    answer = gap.diagnose(xml, log_of_servos(spec.compile(), rng, 10.0))
+    named = {(c.effect, c.actuator): {c.effect, *c.rivals} for c in answer.causes}
+    assert ("spring_torque", "shoulder") in named and (("rotor_inertia", "turn") in named) == bool(rotor)
+    others = {k: x for k, x in named.items() if k not in {("spring_torque", "shoulder"), ("rotor_inertia", "turn")}}
+    assert others and all("payload_mass" in x for x in others.values())

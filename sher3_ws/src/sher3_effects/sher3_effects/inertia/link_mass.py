@@ -22,6 +22,7 @@ class LinkMass(Page):
     inputs = ("acceleration", "weight")
     scales = "payload"
     kinds, places = ("joint",), ("link",)
+    plain = True
     best = Best("steps", "accelerations separate mass from weight")
     explanation = (
         "A link is heavier or lighter than its model says: its weight and inertia, on every joint that carries it."

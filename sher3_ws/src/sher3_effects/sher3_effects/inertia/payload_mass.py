@@ -107,6 +107,7 @@ class PayloadOnLink(PayloadMass):
     """
 
     kinds, places = ("joint",), ("link",)
+    plain = True
     about = ("x", "y", "z")
     on_axis = {"mass": "payload", "x": "payload_x", "y": "payload_y", "z": "payload_z"}
     units = {"mass": "kg", "x": "m", "y": "m", "z": "m"}

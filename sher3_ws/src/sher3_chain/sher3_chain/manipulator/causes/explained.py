@@ -34,14 +34,18 @@ class Explained:
 
 
 def with_rivals(
-    evidence: ArmMotionEvidence, candidates: Candidates, best: Explained, second: Explained | None
+    evidence: ArmMotionEvidence, candidates: Candidates, best: Explained, others: Sequence[Explained]
 ) -> Attribution:
-    """Add to every cause what would explain as much: rivals at its joint, and for a payload what takes its place."""
+    """Add to every cause what would explain as much: rivals at its joint, and what other sets have in its place.
+
+    A link that is too heavy and a rotor do what a payload does alone: it is the rival of both.
+    """
     terms, rivals, ranking = best.fit.terms, [], []
-    alike = second is not None and _alike(evidence, best, second)
+    alike = [other.fit.terms for other in others if _alike(evidence, best, other)]
+    taken = {t.key for t in terms}
     of_joints = {_name(t): (found, i) for found in best.alone for i, t in enumerate(found.fit.terms)}
     for i, term in enumerate(terms):
-        others = [t for j, t in enumerate(terms) if j != i]
+        rest = [t for j, t in enumerate(terms) if j != i]
         if _name(term) in of_joints:
             found, k = of_joints[_name(term)]
             own = [f.terms[-1] for f in found.rivals[k]]
@@ -49,14 +53,10 @@ def with_rivals(
         else:
             own = []
             ranking.append(())
-        trials = [fit(evidence.data, [*others, candidates.term(t.effect, t.site, t.shape)]) for t in own]
+        trials = [fit(evidence.data, [*rest, candidates.term(t.effect, t.site, t.shape)]) for t in own]
         trials += _other_loads(evidence, candidates, best, i)
-        if alike and second is not None:
-            taken = {t.key for t in terms}
-            new = [t for t in second.fit.terms if t.key not in taken]
-            kept = {t.key for t in second.fit.terms}
-            if term.key not in kept:
-                trials += [fit(evidence.data, [*others, t]) for t in new]
+        new = [t for other in alike if term.key not in {t.key for t in other} for t in other if t.key not in taken]
+        trials += [fit(evidence.data, [*rest, t]) for t in new]
         rivals.append(tuple(trials))
     explained = tuple(without_term(evidence, best.fit, i).total - best.fit.total for i in range(len(terms)))
     return Attribution(best.fit, tuple(rivals), explained, tuple(ranking), len(evidence.nuisance))

@@ -28,7 +28,7 @@ from sher3_effects import computed
 from sher3_chain.manipulator.causes.confounding import GAIN
 from sher3_chain.manipulator.causes.explained import Explained, with_rivals
 from sher3_chain.manipulator.causes.lateness import LATE, OF_LAW, Late, lateness
-from sher3_chain.manipulator.causes.links import clearly_less, wrong_links
+from sher3_chain.manipulator.causes.links import CLEARLY, clearly_less, wrong_links
 from sher3_chain.manipulator.causes.payload import centred, closes, middle, payloads
 from sher3_chain.manipulator.causes.plan import BESIDE_LINKS, BESIDE_LOAD, JOINT, bought
 from sher3_chain.manipulator.evidence import ArmMotionEvidence, channel_of, channels_of, of_channel
@@ -41,17 +41,19 @@ TIMING = "timing"
 
 
 def causes_of_arm(evidence: ArmMotionEvidence, candidates: Candidates, say: Say) -> Attribution:
-    """Choose the causes of an arm in motion, with their rivals; none where no joint has a gap."""
+    """Choose the causes of an arm in motion, with their rivals; none where no joint has a gap.
+
+    A load that one joint alone feels is taken where that joint's own laws leave clearly more.
+    """
     if not down_to_floor(evidence.channels, evidence, evidence.null()):
         return Attribution(evidence.null(), (), (), nuisance=len(evidence.nuisance))
-    found = _explained(evidence, candidates, (), None, say)
-    best, second = found, None
-    for loaded in payloads(evidence, candidates):
-        other = _explained(evidence, candidates, loaded.terms[-1:], loaded, say)
-        better = other.cost < best.cost and closes(evidence, other.fit)
-        best, second = (other, found) if better else (best, other if best is found else second)
+    best, others = _explained(evidence, candidates, (), None, say), list[Explained]()
+    for load in payloads(evidence, candidates):
+        other = _explained(evidence, candidates, load.fit.terms[-1:], load.fit, say)
+        better = other.cost < (1.0 if load.felt else CLEARLY) * best.cost and closes(evidence, other.fit)
+        best, others = (other, [*others, best]) if better else (best, [*others, other])
     linked = _linked(evidence, candidates, best, say)
-    return with_rivals(evidence, candidates, *((best, second) if linked is None else (linked, None)))
+    return with_rivals(evidence, candidates, *((best, others) if linked is None else (linked, ())))
 
 
 def _linked(evidence: ArmMotionEvidence, candidates: Candidates, best: Explained, say: Say) -> Explained | None:
