@@ -181,3 +181,25 @@ def test_a_joint_that_never_moved_and_efforts_in_another_unit(urdf_log):
         gap.diagnose(ARM.format(body="", range=""), time, 0.0 * q, 0.0 * q)
     with pytest.raises(MachineError, match="this many times what the model needs"):
         gap.diagnose(URDF.format(mimic=""), time, None, q, 37.0 * effort)
+
+
+def test_a_urdf_says_where_the_stops_are():
+    """Torques throw the pendulum against a stop at half a radian, of which its limits tell."""
+    urdf = """<robot name="r"><link name="base"/><link name="arm"><inertial><origin xyz="0.2 0 0"/><mass value="2"/>
+    <inertia ixx="0.01" iyy="0.03" izz="0.03" ixy="0" ixz="0" iyz="0"/></inertial></link>
+    <joint name="swing" type="revolute"><parent link="base"/><child link="arm"/><axis xyz="0 0 1"/>
+    <limit lower="-0.5" upper="0.5" effort="99" velocity="9"/></joint></robot>"""
+    model = mujoco.MjModel.from_xml_string(urdf)
+    model.opt.timestep = 0.001
+    data, rows = mujoco.MjData(model), []
+    for k in range(12_000):
+        t = 0.001 * k
+        data.qfrc_applied[0] = (
+            60.0 * (0.5 * np.sin(2.1 * t) + 0.25 * np.sin(5.3 * t) - data.qpos[0]) - 3.0 * data.qvel[0]
+        )
+        rows.append([t, data.qpos[0], data.qfrc_applied[0]])
+        mujoco.mj_step(model, data)
+    time, place, torque = np.array(rows).T
+    position = place + 1e-6 * np.random.default_rng(1).normal(size=len(place))
+    found = gap.diagnose(urdf, time, None, position[:, None], torque[:, None])
+    assert found.status == "no_gap" and any("swing: lies beyond the range" in note for note in found.verdict.notes)

@@ -37,6 +37,7 @@ from sher3_chain.joint.description import AxesDescription, Axis, Gravity
 from sher3_chain.joint.own_unit import in_own_unit, own_unit_note, renamed
 from sher3_chain.joint.record import AxesRun
 from sher3_chain.power import unjudged
+from sher3_chain.readings.level import stop_note
 from sher3_chain.readings.wrong import without_wrong, wrong_readings
 from sher3_chain.search.changes import change_notes
 from sher3_chain.search.friction_in_motion import requantified, with_unseen
@@ -131,6 +132,7 @@ class Axes(Chain[AxisEvidence]):
         return [
             *changes,
             *mass_notes(finding.evidence),
+            *stop_notes(finding.evidence),
             *blind_spots(finding),
             *carried_by_others(finding, self.described.axes),
             *([] if finding.significant else unseen(finding.evidence)),
@@ -236,6 +238,12 @@ def mass_notes(evidence: AxisEvidence) -> list[str]:
     behind = max(view.load_mass for view in evidence.records)
     share = f", of which {behind:.3g} move with the second encoder" if behind else ""
     return [f"{axis.name}: mass identified as {evidence.mass:.5g} {unit} ({low:.5g} .. {high:.5g}){share}"]
+
+
+def stop_notes(evidence: AxisEvidence) -> list[str]:
+    """Return a sentence on an axis that lay at a stop of its stated range."""
+    at = np.concatenate([view.at_a_stop for view in evidence.records])
+    return [stop_note(evidence.axis.name, at)] if at.any() else []
 
 
 def unseen(evidence: AxisEvidence) -> list[str]:

@@ -11,7 +11,7 @@ from sher3_diagnosis.filter import EDGE, settled
 from sher3_effects.operators import dahl_turned, second_difference
 from sher3_effects.view import NominalAxis
 
-from sher3_chain.chain.view import LEAD_OF_STROKE, SLIP, ChainView, Loads
+from sher3_chain.chain.view import AROUND_STOP, LEAD_OF_STROKE, SLIP, ChainView, Loads
 from sher3_chain.joint.description import Axis
 from sher3_chain.readings.noise import noise_of
 from sher3_chain.readings.orders import orders_in
@@ -168,10 +168,17 @@ class AxisView(ChainView):
     def in_motion(self) -> Mask:
         """(g,) True where the force balance can be judged: well inside a stretch of motion."""
         limited = self.run.limited
-        told = self.moving if limited is None else self.moving & ~limited[self.run.grid]
+        told = self.moving & settled(~self.at_a_stop, AROUND_STOP)
+        told = told if limited is None else told & ~limited[self.run.grid]
         inside = self.run.inner & self.released & settled(told, REST_SPREADS)
         clear, told_by_force = inside & self.clear, not (self.described.free or self.described.servo)
         return clear if clear.sum() >= ENOUGH * inside.sum() and told_by_force else inside
+
+    @cached_property
+    def at_a_stop(self) -> Mask:
+        """(g,) True where the axis is at an end of its stated range: a stop pushes it back there."""
+        ranges = np.array([self.described.range or (-np.inf, np.inf)])
+        return self.beyond(self.position, ranges)[:, 0]
 
     @property
     def mostly_moves(self) -> bool:

@@ -11,6 +11,7 @@ import numpy as np
 from scipy.ndimage import maximum_filter1d, minimum_filter1d
 from sher3_diagnosis.channel import Array, Mask
 from sher3_diagnosis.evidence import Motion
+from sher3_diagnosis.filter import DECIMATED_RATE, EDGE
 from sher3_effects.motion import GridView
 from sher3_effects.operators import dahl_turned
 
@@ -32,6 +33,11 @@ CREEPS = 0.01
 """Share of the top speed of a slow motion: a slower one cannot be distinguished from a stop."""
 TURNS_BY = 4.0
 """Counts by which a turn differs from a stop: fewer are rounding."""
+
+AROUND_STOP = round(EDGE * DECIMATED_RATE)
+"""Samples of the residual grid around one at a stop: the filter spoils as much of it as of the ends of a run."""
+MOSTLY = 0.9
+"""Share of a record beyond its range from which a joint has another zero than its model."""
 
 
 class Loads(NamedTuple):
@@ -121,6 +127,16 @@ class ChainView(GridView, ABC):
         before, after = np.maximum(run.grid - half, 0), np.minimum(run.grid + half, run.ticks - 1)
         stops = np.column_stack([self._stops(row) for row in range(len(self.joints))])
         return np.asarray((np.abs(run.smooth[after] - run.smooth[before]) > least) & ~stops)
+
+    def beyond(self, position: Array, ranges: Array) -> Mask:
+        """Return (g, n) where joints are at or beyond the ends of their ranges (n, 2), by a count: a stop is there.
+
+        A joint that lies beyond for most of a record has another zero, and no stop there.
+        """
+        low, high = ranges.T
+        counts = np.array([joint.encoder_resolution for joint in self.joints])
+        out = (position < low + counts) | (position > high - counts)
+        return np.asarray(out & (out.mean(axis=0) < MOSTLY))
 
     def _stops(self, row: int) -> Mask:
         """Return (g,) where the readings of a joint stay for as long as a slow motion, or a turn, takes to pass counts.

@@ -84,7 +84,8 @@ class Axis(Strict):
         encoder_at: side of the transmission that `position` is read on; with one encoder it says what that one hides.
         effort_resolution: one step of the measured force, N or N m.
         lead: travel per motor revolution, m or rad; without it cogging is not named.
-        range: positions the axis can reach, m or rad; what lies outside is taken for a wrong unit.
+        range: positions the axis can reach, m or rad; what lies far outside is taken for a wrong unit, and at its ends
+            are stops: by a count or beyond them nothing is judged.
     """
 
     name: str = Field(min_length=1)

@@ -37,6 +37,7 @@ from sher3_chain.manipulator.library import of_joints
 from sher3_chain.manipulator.model import ArmModel
 from sher3_chain.manipulator.readings.wrong import level_notes
 from sher3_chain.power import unjudged
+from sher3_chain.readings.level import stop_note
 from sher3_chain.readings.wrong import wrong_readings
 from sher3_chain.search.changes import change_notes
 from sher3_chain.search.friction_in_motion import requantified
@@ -207,14 +208,9 @@ def scale_note(evidence: ArmMotionEvidence, joint: str) -> str:
 
 
 def stop_notes(evidence: ArmMotionEvidence) -> list[str]:
-    """Return a sentence for each joint that lay at a stop of its model."""
+    """Return a sentence for each joint that lay at a stop."""
     stopped = {j: np.concatenate([v.at_a_stop[:, v.row(j)] for v in evidence.records]) for j in evidence.judged}
-    return [
-        f"{joint}: lies beyond the range of its model for {x.mean():.0%} of the record, where a stop pushes it back: "
-        "not judged there"
-        for joint, x in stopped.items()
-        if x.any()
-    ]
+    return [stop_note(joint, at) for joint, at in stopped.items() if at.any()]
 
 
 def slip_notes(evidence: ArmMotionEvidence) -> list[str]:

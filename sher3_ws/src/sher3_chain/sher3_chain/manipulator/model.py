@@ -55,6 +55,11 @@ class ArmModel:
         """Whether each recorded joint slides."""
         return tuple(self.tree.links[row].slides for row in self.rows)
 
+    @cached_property
+    def ranges(self) -> Array:
+        """Positions at which the stops of each recorded joint begin to act, (k, 2), rad or m; infinite without."""
+        return np.array([(self.tree.links[row].low, self.tree.links[row].high) for row in self.rows])
+
     def regressor(self, q: Array, v: Array, a: Array) -> Array:
         """Return the force that each inertial parameter asks of each recorded joint, (n, k, 10 links).
 

@@ -12,7 +12,7 @@ from sher3_diagnosis.discover.feature import Quantities, Quantity
 from sher3_diagnosis.filter import settled
 from sher3_effects.view import NominalAxis
 
-from sher3_chain.chain.view import LEAD_OF_STROKE, SLIP, ChainView, Loads
+from sher3_chain.chain.view import AROUND_STOP, LEAD_OF_STROKE, SLIP, ChainView, Loads
 from sher3_chain.manipulator.description import Joint
 from sher3_chain.manipulator.encoders import crossing
 from sher3_chain.manipulator.model import PARAMETERS, ROUNDED, ArmModel
@@ -25,8 +25,6 @@ AROUND_IMPACT = 2
 """Samples of the residual grid around one at which a gap is crossed: the filter smears the impact at its end."""
 LINKS_OF_PAYLOAD = 4
 """Leading inertial parameters of a body that a payload changes linearly: its mass, and mass times centre."""
-MOSTLY = 0.9
-"""Share of a record beyond its range from which a joint has another zero than its model."""
 DEVELOPED = 0.95
 """Share of its full size above which a soft dry friction of MuJoCo no longer depends on the exact speed."""
 
@@ -225,20 +223,13 @@ class MotionView(ChainView):
     def in_motion(self, row: int) -> Mask:
         """Return (g,) True where the force balance of a joint can be judged: well inside a stretch of its motion."""
         still = settled(self.moving[:, row] & ~self.at_a_level[:, row] & ~self.turning[:, row], 1)
-        return self.run.inner & still & ~self.impacts & settled(~self.at_a_stop[:, row], AROUND_IMPACT)
+        return self.run.inner & still & ~self.impacts & settled(~self.at_a_stop[:, row], AROUND_STOP)
 
     @cached_property
     def at_a_stop(self) -> Mask:
-        """(g, k) True where a joint lies beyond the range that its MJCF model leaves it: there a stop pushes it back.
-
-        A joint that lies beyond for most of a record has another zero, and no stop there.
-        """
-        if self.model.losses is None:
-            return np.zeros_like(self.velocity, dtype=bool)
-        low, high = self.model.losses.ranges.T
-        beyond = (self._joint_position < low) | (self._joint_position > high)
-        stopped = beyond & (beyond.mean(axis=0) < MOSTLY)
-        return np.asarray(stopped @ (np.linalg.inv(self.coupling) != 0.0))
+        """(g, k) True where a joint lies beyond the range that its model leaves it: there a stop pushes it back."""
+        ranges = np.array([j.range or own for j, own in zip(self.joints, self.model.ranges, strict=True)])
+        return np.asarray(self.beyond(self._joint_position, ranges) @ (np.linalg.inv(self.coupling) != 0.0))
 
     @cached_property
     def impacts(self) -> Mask:

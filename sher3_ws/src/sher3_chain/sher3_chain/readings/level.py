@@ -58,3 +58,11 @@ def level_note(what: str, at: Mask) -> str:
         f"{what} lies flat at its largest reading in {at.mean():.0%} of the samples: its reading or the drive is at a "
         "limit; these samples are not judged"
     )
+
+
+def stop_note(joint: str, at: Mask) -> str:
+    """Return the sentence that names a joint which a stop pushes back in some samples (n,)."""
+    return (
+        f"{joint}: lies beyond the range in which it is free for {at.mean():.1%} of the record, where a stop pushes it "
+        "back: not judged there"
+    )

@@ -13,6 +13,8 @@ from sher3_chain.manipulator.rigid.tree import WORLD, Link, Tree, moved, paramet
 
 FREE, SLIDE, HINGE = 0, 2, 3
 """MuJoCo's numbers for the kinds of joint that are read (mjtJoint)."""
+LIMITS_OFF = 1 << 3
+"""Flag that takes the stops of all joints away (mjDSBL_LIMIT)."""
 BALL = "write a ball joint as three hinges, or take it out where it is at rest"
 BOLTED = "take its freejoint out where the robot is bolted down or hangs in a stand; one that walks is not judged"
 
@@ -51,10 +53,10 @@ def tree_from_mjcf(source: Any, label: str) -> Tree:
             anchor, rotor = np.array(source.jnt_pos[joint]), float(source.dof_armature[source.jnt_dofadr[joint]])
             axis, zero = np.array(source.jnt_axis[joint]), float(source.qpos0[source.jnt_qposadr[joint]])
             slides = kind == SLIDE
-            reach = float(np.abs(source.jnt_range[joint]).max()) if source.jnt_limited[joint] else np.inf
+            low, high = free_range(source, joint)
             at = place + turn @ (anchor - zero * axis if slides else anchor)  # drawn where the joint reads `ref`
             turn = turn if slides else turn @ Rotation.from_rotvec(-zero * axis).as_matrix()
-            links.append(Link(name, "", parent, turn, at, axis, slides, rotor=rotor, reach=reach))
+            links.append(Link(name, "", parent, turn, at, axis, slides, rotor=rotor, low=low, high=high))
             parent, turn, place = len(links) - 1, np.eye(3), -anchor
         carriers.append((parent, turn, place))
         if parent != WORLD:
@@ -73,3 +75,12 @@ def _inertia(source: Any, body: int) -> Array:
 def _pose(position: Array, quaternion: Array) -> tuple[Array, Array]:
     """Orientation (3, 3) and origin (3,) of a position and a quaternion (w, x, y, z)."""
     return Rotation.from_quat(np.roll(quaternion, -1)).as_matrix(), np.array(position)
+
+
+def free_range(source: Any, joint: int) -> tuple[float, float]:
+    """Return the positions at which the stops of a joint of an `MjModel` begin to act; infinite without a stop."""
+    if source.opt.disableflags & LIMITS_OFF or not source.jnt_limited[joint]:
+        return -np.inf, np.inf
+    low, high = map(float, source.jnt_range[joint])
+    margin = float(source.jnt_margin[joint])
+    return low + margin, high - margin

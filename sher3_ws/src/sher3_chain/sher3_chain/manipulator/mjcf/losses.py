@@ -24,7 +24,6 @@ class Losses:
     Attributes:
         names: of the k joints.
         full: their dry friction in motion, (k,), N or N m.
-        ranges: lowest and highest position that the model leaves them free, (k, 2), rad or m; infinite without a stop.
     """
 
     def __init__(self, source: Any, names: Sequence[str], stated: Collection[str] = ()) -> None:
@@ -33,7 +32,6 @@ class Losses:
         self.names = tuple(names)
         self._model = copy(source)
         flags = api.mjtDisableBit
-        free = bool(source.opt.disableflags & int(flags.mjDSBL_LIMIT))
         for flag in (flags.mjDSBL_CONTACT, flags.mjDSBL_LIMIT, flags.mjDSBL_EQUALITY):
             self._model.opt.disableflags |= int(flag)
         self._lag = 0.0  # s, by which the speed of a step lies before that of central differences
@@ -43,7 +41,6 @@ class Losses:
         joints = [self._model.joint(name) for name in names]
         self._places = np.array([int(j.qposadr[0]) for j in joints])
         self._rows = np.array([int(j.dofadr[0]) for j in joints])
-        self.ranges = np.array([_free_range(source, j.id, free) for j in joints])
         bias = api.mjtBias.__members__.get(MOTOR)
         self._passive = Passive(self._model, [j.id for j in joints], None if bias is None else int(bias))
         self.full = np.array([float(self._model.dof_frictionloss[row]) for row in self._rows])
@@ -83,12 +80,3 @@ class Losses:
             api.mj_inverse(self._model, data)
             passive[i], dry[i] = data.qfrc_passive[self._rows], data.qfrc_constraint[self._rows]
         return passive, dry
-
-
-def _free_range(source: Any, joint: int, free: bool) -> tuple[float, float]:
-    """Return the positions at which the stops of a joint begin to act."""
-    if free or not source.jnt_limited[joint]:
-        return -np.inf, np.inf
-    low, high = map(float, source.jnt_range[joint])
-    margin = float(source.jnt_margin[joint])
-    return low + margin, high - margin

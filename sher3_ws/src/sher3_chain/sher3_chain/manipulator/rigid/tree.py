@@ -33,7 +33,7 @@ class Link:
         own: those of the first body alone.
         at: origin of that body in the joint's frame, (3,), m; both have the same axes.
         rotor: inertia of the drive at the joint, kg m^2 or kg.
-        reach: largest position that the model allows, rad or m.
+        low, high: positions at which its stops begin to act, rad or m; infinite without a stop.
         mimics: joint that it follows by a gear; empty: none.
     """
 
@@ -48,8 +48,14 @@ class Link:
     own: Array = field(default_factory=lambda: np.zeros(PARAMETERS))
     at: Array = field(default_factory=lambda: np.zeros(3))
     rotor: float = 0.0
-    reach: float = np.inf
+    low: float = -np.inf
+    high: float = np.inf
     mimics: str = ""
+
+    @property
+    def reach(self) -> float:
+        """Largest position that the model allows, rad or m."""
+        return max(abs(self.low), abs(self.high))
 
     def carrying(self, inertia: Array, turn: Array, place: Array, body: str) -> Link:
         """Return the link with one more body.

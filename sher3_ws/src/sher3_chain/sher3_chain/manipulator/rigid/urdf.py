@@ -16,6 +16,8 @@ from sher3_chain.manipulator.rigid.tree import WORLD, Link, Tree, moved, paramet
 GRAVITY = (0.0, 0.0, -9.81)
 """Of a URDF, which states none: what simulators and Pinocchio take, m/s^2."""
 TURNING, SLIDING, FIXED = ("revolute", "continuous"), ("prismatic",), ("fixed",)
+FREELY = (-np.inf, np.inf)
+"""Range of a joint without stops."""
 MACRO = "xacro:"
 """What an unexpanded file of macros holds."""
 
@@ -98,19 +100,20 @@ class _Reader:
             if kind not in FIXED:
                 self._other[name] = kind
             return _Carrier(at.joint, turn, place)
-        slides, reach = kind in SLIDING, np.inf if kind == "continuous" else self._reach(joint)
+        slides, (low, high) = kind in SLIDING, FREELY if kind == "continuous" else self._range(joint)
         follows = joint.find("mimic")
         mimics = "" if follows is None else follows.get("joint", "")
-        link = Link(name, "", at.joint, turn, place, self._urdf.axis(joint), slides, reach=reach, mimics=mimics)
+        link = Link(name, "", at.joint, turn, place, self._urdf.axis(joint), slides, low=low, high=high, mimics=mimics)
         self._links.append(link)
         return _Carrier(len(self._links) - 1, np.eye(3), np.zeros(3))
 
-    def _reach(self, joint: Element) -> float:
-        """Return the largest position that a joint allows, infinite where it states no limits."""
+    def _range(self, joint: Element) -> tuple[float, float]:
+        """Return the positions that a joint allows, infinite where it states no limits."""
         limit = joint.find("limit")
         if limit is None or not {"lower", "upper"} <= limit.attrib.keys():
-            return np.inf
-        return max(abs(float(self._urdf.numbers(limit, key, 1)[0])) for key in ("lower", "upper"))
+            return FREELY
+        low, high = (float(self._urdf.numbers(limit, key, 1)[0]) for key in ("lower", "upper"))
+        return (low, high) if low < high else FREELY
 
     def _inertial(self, element: Element | None) -> Array:
         if element is None:
