@@ -33,7 +33,7 @@ MOVES = ("revolute", "continuous", "prismatic")
 """Types of joint that a posture has a value of."""
 
 
-def draft_arm(path: Path, tables: Tables, model: Path) -> Draft | None:
+def draft_postures(path: Path, tables: Tables, model: Path) -> Draft | None:
     """Draft an arm of a table of postures; None where it has a clock, or no columns of joints and of a point.
 
     Raises:

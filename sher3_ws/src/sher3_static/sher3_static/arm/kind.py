@@ -19,7 +19,7 @@ from sher3_machines.intake.kind import Draft
 from sher3_machines.intake.tables import Tables
 
 from sher3_static.arm.description import ArmDescription
-from sher3_static.arm.draft import draft_arm
+from sher3_static.arm.draft import draft_postures
 from sher3_static.arm.frames import fitted_view, set_up
 from sher3_static.arm.kinematics import Arm, arm_from_table
 from sher3_static.arm.reading import read_arm
@@ -89,7 +89,7 @@ class ArmKind(TableKind[ArmDescription]):
 
     def draft(self, path: Path, tables: Tables, rate: float | None, model: Path | None) -> Draft | None:
         """Draft an arm of postures where a model and no clock is given; None of any other table."""
-        return draft_arm(path, tables, model) if model is not None and rate is None else None
+        return draft_postures(path, tables, model) if model is not None and rate is None else None
 
     def tables(self, known: KnownArm, runs: Sequence[Readings]) -> Sequence[Table]:
         """Return all postures as one table with the frames fitted to all; a tenth is held out in turn.

@@ -48,15 +48,16 @@ def loads_of(tables: Tables) -> tuple[str, str] | None:
     return None
 
 
-def draft_cell(path: Path, tables: Tables) -> Draft:
-    """Draft the description of a load cell.
+def draft_cell(path: Path, tables: Tables) -> Draft | None:
+    """Draft the description of a load cell; None of a table without known loads and what read them.
 
     Args:
         path: of the data, for the name.
-        tables: in which `loads_of` finds two columns.
+        tables: what it holds.
     """
     found = loads_of(tables)
-    assert found is not None
+    if found is None:
+        return None
     load, read = found
     guesses = ["a load cell: a table of known loads and what was read; a record in time needs a column named t or time"]
     said = _name_and_unit(load)[1]

@@ -13,7 +13,7 @@ from sher3_machines.intake.tables import Tables
 from sher3_machines.thresholds import BLOCKS
 
 from sher3_static.cell.description import CellDescription
-from sher3_static.cell.draft import draft_cell, loads_of
+from sher3_static.cell.draft import draft_cell
 from sher3_static.cell.reading import read_cell, scatter, unloading
 from sher3_static.cell.view import ForcesView
 from sher3_static.kind import TableKind
@@ -46,7 +46,7 @@ class CellKind(TableKind[CellDescription]):
 
     def draft(self, path: Path, tables: Tables, rate: float | None, model: Path | None) -> Draft | None:
         """Draft a table of known loads and readings; None where the file is none."""
-        return draft_cell(path, tables) if rate is None and model is None and loads_of(tables) else None
+        return draft_cell(path, tables) if rate is None and model is None else None
 
     def tables(self, known: CellDescription, runs: Sequence[Readings]) -> Sequence[Table]:
         """Return all readings as one table; every eighth is held out in turn."""

@@ -52,28 +52,25 @@ SCALES = (1.0, 1e3, 1e-3, 1e6, 1e-6)
 """A reading over its target, where one is in m, mm or um: a deviation in proportion to the target is a lead error."""
 
 
-def is_test(tables: Tables) -> bool:
-    """Return whether a table holds targets and what was read there; a clock makes it a record unless a side is told."""
-    flat = {n: x for n, x in tables.items() if x.ndim == 1}
-    told = one(flat, CYCLE) is not None or one(flat, SIDE) is not None
-    if any(tells_time(n) for n in flat) and not told:
-        return False
-    return _columns(flat) is not None
+def draft_test(path: Path, tables: Tables) -> Draft | None:
+    """Draft the description of a positioning test of one axis; None of a table without targets and readings.
 
-
-def draft_test(path: Path, tables: Tables) -> Draft:
-    """Draft the description of a positioning test of one axis.
+    A clock makes a table a record, unless a cycle or a side of approach is told.
 
     Args:
         path: of the data, for the name.
-        tables: in which `is_test` finds one.
+        tables: what it holds.
     """
-    guesses: list[str] = []
     flat = {n: x for n, x in tables.items() if x.ndim == 1}
-    found = _columns(flat)
-    assert found is not None
-    (target, read), guessed = found, "a table of targets and readings, as ISO 230-2 has it"
-    guesses.append(f"a positioning test: {guessed}; a record in time needs a column named t, time or stamp")
+    told = one(flat, CYCLE) is not None or one(flat, SIDE) is not None
+    found = None if any(tells_time(n) for n in flat) and not told else _columns(flat)
+    if found is None:
+        return None
+    target, read = found
+    guesses = [
+        "a positioning test: a table of targets and readings, as ISO 230-2 has it; a record in time needs a column "
+        "named t, time or stamp"
+    ]
     unit, why = _unit(target, flat[target])
     guesses.append(f"targets are {target!r}, in {unit}, because {why}; write deg for a table that turns")
     axis: dict[str, Any] = {"name": "axis", "motion": "rotary" if unit in ROTARY_UNITS else "linear"}

@@ -13,7 +13,7 @@ from sher3_static.kind import TableKind
 from sher3_static.positioning.axis import axis_table
 from sher3_static.positioning.circle import circle_table
 from sher3_static.positioning.description import PositioningDescription
-from sher3_static.positioning.draft import draft_test, is_test
+from sher3_static.positioning.draft import draft_test
 from sher3_static.positioning.ranking import ranking
 from sher3_static.positioning.reading import read_tests
 from sher3_static.readings import Readings
@@ -39,7 +39,7 @@ class PositioningKind(TableKind[PositioningDescription]):
 
     def draft(self, path: Path, tables: Tables, rate: float | None, model: Path | None) -> Draft | None:
         """Draft a test of a table without a clock that has targets and readings; None without them."""
-        return draft_test(path, tables) if rate is None and model is None and is_test(tables) else None
+        return draft_test(path, tables) if rate is None and model is None else None
 
     def tables(self, known: PositioningDescription, runs: Sequence[Readings]) -> Sequence[Table]:
         """Return every test as a table; raises MachineError where nothing tells what repeats."""

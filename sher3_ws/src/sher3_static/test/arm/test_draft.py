@@ -7,7 +7,7 @@ from sher3_common import parse_yaml
 from sher3_diagnosis import diagnose
 from sher3_machines import import_case, open_case
 from sher3_machines.drafting.drafts import draft_of
-from sher3_static.arm.draft import draft_arm
+from sher3_static.arm.draft import draft_postures
 
 AXES = {"pan": "z", "lift": "y", "elbow": "y", "roll": "z"}
 LENGTH = 0.4
@@ -71,7 +71,7 @@ def test_a_table_of_postures_is_drafted_and_its_zero_found(tmp_path, header, uni
 def test_what_has_a_clock_or_no_joints_or_no_point_is_no_table_of_postures(tmp_path, header):
     (tmp_path / "arm.urdf").write_text(URDF)
     columns = {name: np.arange(30.0) for name in header.split(",")}
-    assert draft_arm(tmp_path / "a.csv", columns, tmp_path / "arm.urdf") is None
+    assert draft_postures(tmp_path / "a.csv", columns, tmp_path / "arm.urdf") is None
 
 
 def test_numbered_columns_are_the_joints_that_move_in_order(tmp_path):
@@ -84,5 +84,5 @@ def test_a_joint_called_t_that_goes_both_ways_is_no_clock(tmp_path):
     (tmp_path / "arm.urdf").write_text(URDF.replace("roll_joint", "t"))
     rng = np.random.default_rng(4)
     columns = {name: rng.normal(size=30) for name in ("x", "y", "z", "lift_joint", "elbow_joint", "t")}
-    found = draft_arm(tmp_path / "a.csv", columns, tmp_path / "arm.urdf")
+    found = draft_postures(tmp_path / "a.csv", columns, tmp_path / "arm.urdf")
     assert found is not None and [c["column"] for c in parse_yaml(found.text)["joint_positions"]][-1] == "t"
