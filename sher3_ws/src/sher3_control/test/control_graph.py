@@ -63,7 +63,8 @@ class ControlGraph:
     def __init__(self, graph):
         self.graph = graph
         self.robot = graph.add(IdealRobot)
-        self.supervisor = graph.add(SupervisorNode, ROBOT)
+        no_drives = ControlSettings.from_robot(ROBOT, {"supervisor": {"hand_apart": 10.0}})  # to say what they hold
+        self.supervisor = graph.add(SupervisorNode, ROBOT, no_drives)
         bench = ControlSettings.from_robot(ROBOT, {"motion": {"regime": "bench"}})
         self.kinematics = graph.add(KinematicsNode, ROBOT, bench)
         self.admittance = graph.add(AdmittanceNode, ROBOT)
