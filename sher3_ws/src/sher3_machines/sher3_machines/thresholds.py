@@ -11,3 +11,6 @@ from __future__ import annotations
 BLOCKS = 8
 """Blocks that held-out losses and intervals are taken over where nothing was repeated: as many as the SHER's standard
 set has runs, so that the engine's prices mean the same. Set by that argument."""
+
+FURTHEST = {"linear": 10.0, "rotary": 40.0}
+"""Travel, m or rad, beyond which an axis without a stated range is taken for a unit slip."""

@@ -186,6 +186,8 @@ def missing(part: AxisEvidence) -> str:
     if travel <= part.axis.encoder_resolution:
         return f"does not move by more than one count, {part.axis.encoder_resolution:.3g} {part.axis.unit_of_position}"
     if not all(len(view.run.grid) < 2 * BLOCKS for view in part.records):
+        if part.axis.driven and part.axis.mass is None:
+            return "its force is recorded and its `mass` is not stated: state it, or `mass: unknown`"
         return "nothing was recorded that its position can be compared with"
     longest = max((view.run for view in part.records), key=lambda run: run.ticks * run.period)
     return (

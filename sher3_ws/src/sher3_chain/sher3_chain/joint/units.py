@@ -6,6 +6,7 @@ import numpy as np
 from sher3_diagnosis.channel import Array
 from sher3_machines.errors import MachineError
 from sher3_machines.intake.fields import VELOCITIES
+from sher3_machines.thresholds import FURTHEST
 
 from sher3_chain.joint.description import Axis
 
@@ -13,8 +14,6 @@ SLIPS = {"linear": (1e3, "mm recorded as m"), "rotary": (180.0 / np.pi, "deg rec
 """Motion -> factor of its usual wrong unit, and that slip in words."""
 SLIP_TOLERANCE = 1.25
 """Factor within which a ratio of two signals counts as that of a wrong unit."""
-FURTHEST = {"linear": 10.0, "rotary": 40.0}
-"""Travel, m or rad, beyond which an axis without a stated range is taken for a unit slip."""
 TURNS = ("count", "rev", *VELOCITIES)
 """Units of a position that are not checked for a slip to degrees: a motor may well make a hundred turns."""
 BEYOND = 0.1

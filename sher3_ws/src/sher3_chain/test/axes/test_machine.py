@@ -7,6 +7,7 @@ from sher3_chain.chain.machine import NO_REPEATS
 from sher3_chain.joint.record import AxesRun
 from sher3_diagnosis import diagnose
 from sher3_diagnosis.flow import UnknownEffect
+from sher3_machines import MachineError
 from slides import COUNT, MASS, PERIOD, axis_of, columns, described, driven, effects, machine, run_of, servo, verdict_of
 
 NO_LAW = {"kind": "force", "held": True}
@@ -137,6 +138,14 @@ def test_notes_say_what_cannot_be_told():
     signals = run_of(driven(1.0)).signals
     runs = [AxesRun(name, PERIOD, signals, [f"{name}: resampled"]) for name in "ab"]
     assert repeated.audit(runs) == ["a, b: resampled"]
+
+
+def test_an_effort_without_a_mass_is_refused_with_the_word_that_is_missing():
+    with pytest.raises(MachineError, match="`mass` is not stated: state it, or `mass: unknown`"):
+        signals = {**columns("position"), **columns("effort", unit="N")}
+        found = run_of(driven(1.0)).signals["slide"]
+        kept = {"position": found["position"], "effort": found["command"]}
+        diagnose(machine(mass=None, signals=signals), [AxesRun("run", PERIOD, {"slide": kept})])
 
 
 def test_facts_are_what_the_description_states():

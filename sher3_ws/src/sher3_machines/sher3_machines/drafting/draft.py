@@ -12,10 +12,12 @@ from sher3_common import dump_yaml
 from sher3_diagnosis.channel import Array
 
 from sher3_machines.drafting.guesses import (
+    NAMED,
     clock_of,
     count_of,
     period_of,
     position_unit,
+    reach,
     scatter,
     time_unit,
     travel,
@@ -30,6 +32,7 @@ from sher3_machines.intake.runs import longest
 from sher3_machines.intake.spelling import bare, table_of
 from sher3_machines.intake.tables import Tables
 from sher3_machines.intake.units import UNITS
+from sher3_machines.thresholds import FURTHEST
 
 PLACES = ("reference", "load")
 """Signals that are in the unit of the position where their name says no other."""
@@ -111,7 +114,7 @@ def _unit_of(place: Place, x: Array) -> tuple[str, float, str]:
     """Return the unit of a place, its factor, and why; of a velocity that stands for one, the unit of it."""
     what = named(place[0])
     if what.signal == "velocity":
-        return (what.unit, 1.0, "its name says so") if what.unit in VELOCITIES else ("rad/s", 1.0, "it is a velocity")
+        return (what.unit, 1.0, NAMED) if what.unit in VELOCITIES else ("rad/s", 1.0, "it is a velocity")
     slides = what.signal is not None and bool(set(what.axis.split("_")) & CARTESIAN)  # `y` beside `u` is no direction
     return position_unit(what.unit, x, slides)
 
@@ -169,12 +172,24 @@ def _axis(axis: str, signals: Mapping[str, Place], tables: Tables, period: float
     si = "rad" if unit in ROTARY else "m"
     guesses.append(f"{label}: encoder_resolution {resolution:.3g} {si}, {said}; another unit changes it too")
     law = _law(label, columns, guesses)
-    out = {"name": label, "motion": "rotary" if unit in ROTARY else "linear", "signals": columns}
+    out: dict[str, Any] = {"name": label, "motion": "rotary" if unit in ROTARY else "linear", "signals": columns}
     out["command_law"] = law
     if law["kind"] == "force":
         guesses.append(f"{label}: mass is not known and will be identified from the record; state it where you can")
         out["mass"] = "unknown"
-    return {**out, "encoder_resolution": float(f"{resolution:.6g}")}
+    out["encoder_resolution"] = float(f"{resolution:.6g}")
+    turns = own == "rev" or own in VELOCITIES  # may well be many
+    named_so = why == NAMED and not turns
+    return {**out, **(_range(label, x * UNITS[own] * factor, str(out["motion"]), guesses) if named_so else {})}
+
+
+def _range(label: str, x: Array, motion: str, guesses: list[str]) -> dict[str, Any]:
+    """Return the range of a place (n,), m or rad, that goes further than most; of others none."""
+    if reach(x) < FURTHEST[motion]:
+        return {}
+    end = float(np.ceil(reach(x)))
+    guesses.append(f"{label}: range of {end:.6g} {'rad' if motion == 'rotary' else 'm'} both ways, which it needs")
+    return {"range": [-end, end]}
 
 
 def per_second(unit: str) -> str:

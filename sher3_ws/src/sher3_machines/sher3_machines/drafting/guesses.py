@@ -13,6 +13,8 @@ from sher3_machines.intake.spelling import bare
 from sher3_machines.intake.tables import Tables
 from sher3_machines.intake.units import UNITS
 
+NAMED = "its name says so"
+"""Why a place is in a unit that nobody had to guess."""
 TOO_FAR = 40.0
 """Position beyond which the unit is hardly rad or m: more than six turns."""
 WIDEST_ROOM = 15.0
@@ -128,7 +130,7 @@ def in_thousandths(stamps: Array) -> bool:
 def position_unit(unit: str | None, x: Array, slides: bool = False) -> tuple[str, float, str]:
     """Return the unit of a position, its factor, and why; `slides`: the name of the axis says so."""
     if unit is not None and unit in UNITS and unit not in ("count", "%", "1"):
-        return unit, 1.0, "its name says so"
+        return unit, 1.0, NAMED
     largest = reach(x)
     if unit == "count" or (bool((x == np.round(x)).all()) and largest > COARSE):
         bits = max(COARSEST_BITS, int(np.ceil(np.log2(max(float(np.ptp(x)), 2.0)))))

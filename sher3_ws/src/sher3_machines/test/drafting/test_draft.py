@@ -220,3 +220,13 @@ def test_a_count_is_said_with_its_unit(tmp_path, header, count):
 def test_a_row_number_for_a_time_is_said(tmp_path):
     found = written(tmp_path, "Time,angle", np.arange(len(TIME)), np.sin(TIME))
     assert any("grows by one a row" in guess and "--rate" in guess for guess in found.guesses)
+
+
+@pytest.mark.parametrize("header", ["t,q [rad]", "t,q_mrad"])
+def test_a_motor_of_many_turns_has_a_draft_that_can_be_imported(tmp_path, header):
+    """198 rad: a twisted string takes thirty turns."""
+    found = written(tmp_path, header, TIME, (198.0 if "[rad]" in header else 198e3) * np.sin(TIME))
+    (tmp_path / "a.yaml").write_text(found.text, encoding="utf-8")
+    assert load_description(tmp_path / "a.yaml").axes[0].range == (-198.0, 198.0)
+    import_case([tmp_path / "a.csv"], tmp_path / "a.yaml", tmp_path / "case")
+    assert "range" not in written(tmp_path, "t,q [rad]", TIME, np.sin(TIME)).text.replace("# guessed", "")

@@ -50,7 +50,7 @@ def axis_rows(run: str, tables: Tables, test: AxisTest, notes: list[str]) -> dic
     column = test.reading or test.deviation
     assert column is not None
     value = pick_beside(target.shape, column, tables, run)
-    deviation = value - target if test.reading is not None else value
+    deviation = from_zero(run, test, value - target, target, notes) if test.reading is not None else value
     _likely(run, test, column, target, deviation)
     rows = {"target": target, "deviation": deviation}
     if test.direction is not None:
@@ -91,6 +91,18 @@ def pass_rows(run: str, tables: Tables, test: AxisTest, passes: Sequence[Column]
         part["cycle"] = np.full(len(target), float(k // 2))
         parts.append(part if warm is None else {**part, "temperature": warm[there]})
     return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+
+
+def from_zero(run: str, test: AxisTest, deviation: Array, target: Array, notes: list[str]) -> Array:
+    """Return deviations (n,) of a reading that counts from another place, such as an absolute encoder's, from there.
+
+    They then lie together, further off than a travel allows; those of a wrong unit do not.
+    """
+    zero, allowed = float(np.median(deviation)), LIKELY_SLIP * np.ptp(target)
+    if abs(zero) < allowed or (np.abs(deviation - zero) > allowed).any():
+        return deviation
+    notes.append(f"{run}: {test.name}: its reading counts from {zero:.6g}; taken off")
+    return deviation - zero
 
 
 def _likely(run: str, test: AxisTest, column: Column, target: Array, deviation: Array) -> None:

@@ -177,3 +177,16 @@ def test_a_table_with_a_column_for_each_pass():
     assert found(verdict)["backlash"]["width"] == pytest.approx(6e-6, rel=0.1) and len(verdict.causes) == 1
     with pytest.raises(ValueError, match="either `reading`, `deviation` or `passes`"):
         description(passes=passes)
+
+
+def test_an_encoder_that_counts_from_elsewhere_is_read_from_there():
+    """5.12 m off, as an absolute encoder is; in mm it would be a wrong unit."""
+    data = table(scale=40e-6)
+    away = {**data, "reading": data["reading"] + 5.12}
+    described = description()
+    run = read_tests("a", away, described)
+    assert any("its reading counts from 5.12" in note and "taken off" in note for note in run.notes)
+    (cause,) = diagnose(KIND.machine(described), [run]).verdict.causes
+    assert cause.effect == "lead_error" and cause.parameters["relative"].value == pytest.approx(40e-6, rel=0.01)
+    with pytest.raises(MachineError, match="correct the units"):
+        read_tests("a", {**data, "reading": 1e3 * data["reading"]}, described)
