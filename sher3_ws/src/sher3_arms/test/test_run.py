@@ -24,6 +24,14 @@ def test_a_friction_is_sealed_answered_and_scored(tmp_path):
         run_arms([0], ["own"], tmp_path / "run")
 
 
+def test_beside_a_fault_nothing_is_named_that_is_far_below_the_floor(tmp_path):
+    """Half a step by which torques are late looks like an inertia, of a twentieth of the floor."""
+    found = run_arms([2006], ["own"], tmp_path / "run")
+    assert [x.kind for x in found] == ["spring"] and all(x.top for x in found)
+    for path in sorted((tmp_path / "run/cases").glob("*/verdict.json")):
+        assert len(json.loads(path.read_text())["causes"]) == 1
+
+
 def test_a_case_that_no_draw_makes_stable_is_left_out_and_said(tmp_path, monkeypatch):
     monkeypatch.setattr(cases, "deal", lambda *_: Fault("late_drive", 1, 0.08))
     told = []

@@ -10,7 +10,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import ClassVar, NamedTuple, Protocol
+from typing import NamedTuple, Protocol
 
 from sher3_diagnosis.channel import Array, Channel, Floors, Mask
 from sher3_diagnosis.effect import ROTARY
@@ -92,8 +92,6 @@ class Evidence:
     rotary: frozenset[str] = frozenset()
     counts: Mapping[str, float] = field(default_factory=dict)
     nuisance: tuple[Term, ...] = ()
-    at_most: ClassVar[bool] = False
-    """Whether floors bound the noise from above, so that what a fit leaves below one says how large it is."""
 
     @property
     def views(self) -> list[View]:
@@ -151,10 +149,3 @@ class Evidence:
     def loss(self, channel: Channel, after: Fit) -> float:
         """Return the held-out loss of a channel under a fit."""
         return sum(v for (_, c), v in after.loss.items() if c == channel)
-
-    def shown(self, channel: Channel, after: Fit) -> float:
-        """Return the mean square of the noise over that of the floor: 1 of a measured floor, less of a bound.
-
-        An effect of half a bound is worth a name where a law of it leaves a tenth of the bound on runs left out.
-        """
-        return min(1.0, self.loss(channel, after) / max(self.samples(channel), 1)) if self.at_most else 1.0

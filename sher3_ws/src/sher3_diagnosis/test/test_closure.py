@@ -76,22 +76,3 @@ def test_repeats_of_partly_free_residuals_differ_by_their_zeros_too():
     evidence = Evidence(excitations=["a", "a"], data=data, units={channel: "m"}, places={})
     assert zeros_floor(evidence, channel) == pytest.approx(2.0)
     assert zeros_floor(evidence_of(RUNS), AXIS) == 0.0
-
-
-class Bounded(Evidence):
-    """Evidence whose floors are no less than the noise."""
-
-    at_most = True
-
-
-@pytest.mark.parametrize(("kind", "value", "shown"), [(Evidence, 0.0, 1.0), (Bounded, 1.0, 0.09)])
-def test_a_fit_shows_by_what_it_leaves_how_far_the_noise_lies_below_a_bound(kind, value, shown):
-    """Offsets of 0.9 floors with a noise of 0.3 of them: nothing above the floor, but nearly all that there is."""
-    runs = [run(0.9 + 0.3 * np.tile([1.0, -1.0], 20)) for _ in range(5)]
-    whole = evidence_of(runs)
-    evidence = kind(whole.excitations, whole.data, whole.units, whole.places)
-    after = fit(evidence.data, [make_term(evidence.data, OFFSET, "axis", {})])
-    found = closure(evidence, AXIS, evidence.null(), after)
-    assert found.value == pytest.approx(value)
-    assert found.low == (None if value == 0.0 else pytest.approx(0.9, abs=0.01))
-    assert evidence.shown(AXIS, after) == pytest.approx(shown, rel=0.02)

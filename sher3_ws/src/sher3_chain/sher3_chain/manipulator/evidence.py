@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import ClassVar
 
 import numpy as np
 from sher3_diagnosis.channel import Array, Channel, Residual, Residuals
@@ -59,8 +58,6 @@ class ArmMotionEvidence(ChainEvidence):
     shares: Mapping[str, Share] = field(default_factory=dict)
     turned: Sequence[str] = ()
     slips: Mapping[str, Share] = field(default_factory=dict)
-    at_most: ClassVar[bool] = True
-    """Floors count the noise of all encoders at their worst."""
     scales: Mapping[str, Sequence[Share]] = field(default_factory=dict)
     against: Sequence[str] = ()
     inertias: Inertias | None = None

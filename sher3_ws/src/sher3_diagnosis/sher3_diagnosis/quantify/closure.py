@@ -64,7 +64,7 @@ def _rows(evidence: Evidence, channel: Channel, before: Fit, after: Fit) -> Arra
         floor = evidence.floors[r][channel][part]
         residual = evidence.data.residuals[r][channel]
         left = [residual.restored(x[r])[:, part] / floor for x in (old, new)]
-        base = max(evidence.shown(channel, after), repeats / float(np.mean(floor**2)))
+        base = max(1.0, repeats / float(np.mean(floor**2)))
         pieces = zip(*(np.array_split(x, cuts) for x in left), strict=True)
         rows += [[np.mean(x**2) for x in piece] + [base] for piece in pieces if len(piece[0])]
     return np.array(rows)

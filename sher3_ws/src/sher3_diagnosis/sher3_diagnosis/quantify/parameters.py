@@ -72,9 +72,8 @@ def left_share(evidence: Evidence, fit: Fit, index: int) -> float:
     """Return the share of its gap, above the floor and on held-out runs, that a cause leaves: 0 to 1."""
     without = without_term(evidence, fit, index)
     channels = fit.terms[index].channels
-    below = {c: (1.0 - evidence.shown(c, fit)) * evidence.samples(c) for c in channels}
-    gap = sum(max(evidence.excess(c, without) + below[c], 0.0) for c in channels)
-    left = sum(max(excess_of(evidence, c, remains(evidence, fit, index, c)) + below[c], 0.0) for c in channels)
+    gap = sum(max(evidence.excess(c, without), 0.0) for c in channels)
+    left = sum(max(excess_of(evidence, c, remains(evidence, fit, index, c)), 0.0) for c in channels)
     return min(1.0, left / gap) if gap > 0.0 else 1.0
 
 
