@@ -7,7 +7,9 @@ the products of a fit are at hand.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cached_property
 from itertools import accumulate
+from typing import NamedTuple
 
 import numpy as np
 
@@ -19,19 +21,52 @@ Products = tuple[Array, Array, Array]
 """Normal matrices (runs, p, p), right sides (runs, p) and energies (runs,)."""
 
 
+class Blocks:
+    """Columns and fixed part of a term side by side on a channel, per run (N, width + 1); None where it does not show.
+
+    They are put together at the first product that is not at hand, and kept as long as the term stays in the trail.
+    """
+
+    def __init__(self, term: Term, channel: Channel) -> None:
+        self.term, self.channel = term, channel
+
+    @cached_property
+    def of_runs(self) -> list[Array | None]:
+        """The block of every run."""
+        return [self._of(r) if self.channel in n else None for r, n in enumerate(self.term.samples)]
+
+    def _of(self, run: int) -> Array:
+        x, f = self.term.columns[run].get(self.channel), self.term.fixed[run].get(self.channel)
+        out = np.zeros((self.term.samples[run][self.channel], self.term.width + 1))
+        if x is not None:
+            out[:, : x.shape[1]] = x
+        if f is not None:
+            out[:, -1] = f
+        return out
+
+
+class Step(NamedTuple):
+    """The last term of a trail, its blocks and the products of all terms so far."""
+
+    blocks: Blocks | None
+    found: Products
+
+
 def products(data: Whitened, terms: Sequence[Term], channel: Channel) -> Products:
     """Return the normal matrices, right sides and energies of a channel.
 
     The energy is that of the target less the fixed parts of all terms; runs without the channel have zeros. Those of
     the leading terms are kept from the fit before: a search tries many last terms beside the same others.
     """
-    trail = data.trails.setdefault(channel, [(None, _without_terms(data, channel))])
-    same = next((i for i, (a, (b, _)) in enumerate(zip(terms, trail[1:], strict=False)) if a is not b), len(trail) - 1)
+    trail = data.trails.setdefault(channel, [Step(None, _without_terms(data, channel))])
+    pairs = enumerate(zip(terms, trail[1:], strict=False))
+    same = next((i for i, (a, (b, _)) in pairs if a is not b.term), len(trail) - 1)
     same = min(same, len(terms))
     del trail[same + 1 :]
-    for i, term in enumerate(terms[same:], start=same):
-        trail.append((term, _extended(data, trail[-1][1], terms[:i], term, channel)))
-    normal, right, energy = trail[-1][1]
+    for term in terms[same:]:
+        blocks = Blocks(term, channel)
+        trail.append(Step(blocks, _extended(data, trail, blocks)))
+    normal, right, energy = trail[-1].found
     return normal, right, np.maximum(energy, 0.0)
 
 
@@ -41,21 +76,24 @@ def _without_terms(data: Whitened, channel: Channel) -> Products:
     return np.zeros((runs, 0, 0)), np.zeros((runs, 0)), energy
 
 
-def _extended(data: Whitened, found: Products, others: Sequence[Term], term: Term, channel: Channel) -> Products:
-    """Return the products of terms and one more, from those of the others."""
-    runs, q = found[1].shape
+def _extended(data: Whitened, trail: Sequence[Step], new: Blocks) -> Products:
+    """Return the products of the terms of a trail and one more."""
+    before, term, channel = trail[-1].found, new.term, new.channel
+    runs, q = before[1].shape
     p = q + term.width
-    normal, right, energy = np.zeros((runs, p, p)), np.zeros((runs, p)), found[2]
-    normal[:, :q, :q], right[:, :q] = found[0], found[1]
+    normal, right, energy = np.zeros((runs, p, p)), np.zeros((runs, p)), before[2]
+    normal[:, :q, :q], right[:, :q] = before[0], before[1]
     if channel not in term.channels:
         return normal, right, energy
-    own, alone = _with_target(data, term, channel), _pair(term, term, channel, runs)
+    # Beside a copy of itself: of one array NumPy computes half of the products, which rounds otherwise.
+    own, alone = _with_target(data, new), _pair(new, Blocks(term, channel))
     normal[:, q:, q:] = alone[:, :-1, :-1]
     right[:, q:] = own[:, :-1] - alone[:, :-1, -1]
     energy = energy - 2.0 * own[:, -1] + alone[:, -1, -1]
-    starts = accumulate((t.width for t in others), initial=0)
-    for other, start in ((t, s) for t, s in zip(others, starts, strict=False) if channel in t.channels):
-        both, at = _pair(term, other, channel, runs), slice(start, start + other.width)
+    others = [step.blocks for step in trail if step.blocks is not None]
+    starts = accumulate((other.term.width for other in others), initial=0)
+    for other, start in ((o, s) for o, s in zip(others, starts, strict=False) if channel in o.term.channels):
+        both, at = _pair(new, other), slice(start, start + other.term.width)
         normal[:, q:, at] = both[:, :-1, :-1]
         normal[:, at, q:] = both[:, :-1, :-1].transpose(0, 2, 1)
         right[:, q:] -= both[:, :-1, -1]
@@ -64,38 +102,25 @@ def _extended(data: Whitened, found: Products, others: Sequence[Term], term: Ter
     return normal, right, energy
 
 
-def _block(term: Term, run: int, channel: Channel, samples: int) -> Array | None:
-    """Columns and fixed part of a term side by side, (N, width + 1); None where it does not show."""
-    x, f = term.columns[run].get(channel), term.fixed[run].get(channel)
-    if x is None and f is None:
-        return None
-    return np.column_stack([term.wide(run, channel, samples), np.zeros(samples) if f is None else f])
-
-
-def _with_target(data: Whitened, term: Term, channel: Channel) -> Array:
+def _with_target(data: Whitened, blocks: Blocks) -> Array:
     """Products of a term with the target, (runs, width + 1)."""
-    key = (id(data), channel)
+    term, key = blocks.term, (id(data), blocks.channel)
     if key not in term.products:
         out = np.zeros((len(data.target), term.width + 1))
-        for r, target in enumerate(data.target):
-            block = _block(term, r, channel, len(target[channel])) if channel in target else None
-            if block is not None:
-                out[r] = block.T @ target[channel]
+        for r, (target, block) in enumerate(zip(data.target, blocks.of_runs, strict=True)):
+            if block is not None and blocks.channel in target:
+                out[r] = block.T @ target[blocks.channel]
         term.products[key] = (data, out)
     return term.products[key][1]
 
 
-def _pair(a: Term, b: Term, channel: Channel, runs: int) -> Array:
+def _pair(a: Blocks, b: Blocks) -> Array:
     """Products of two terms, (runs, width_a + 1, width_b + 1)."""
-    key = (id(b), channel)
-    if key not in a.products:
-        out = np.zeros((runs, a.width + 1, b.width + 1))
-        for r in range(runs):
-            if channel not in a.samples[r] or channel not in b.samples[r]:
-                continue
-            n = a.samples[r][channel]
-            left, right = _block(a, r, channel, n), _block(b, r, channel, n)
+    kept, key = a.term.products, (id(b.term), a.channel)
+    if key not in kept:
+        out = np.zeros((len(a.of_runs), a.term.width + 1, b.term.width + 1))
+        for r, (left, right) in enumerate(zip(a.of_runs, b.of_runs, strict=True)):
             if left is not None and right is not None:
                 out[r] = left.T @ right
-        a.products[key] = (b, out)
-    return a.products[key][1]
+        kept[key] = (b.term, out)
+    return kept[key][1]

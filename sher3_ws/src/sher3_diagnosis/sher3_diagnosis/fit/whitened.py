@@ -17,7 +17,7 @@ class Whitened:
         residuals, floors: per run and channel.
         target: `target[r][c]` is the (N,) vector of channel c in run r: samples that count, components in turn.
         fits: kept by `sher3_diagnosis.fit.fitting`.
-        trails: per channel the terms of the last fit, each with the products so far; by `sher3_diagnosis.fit.gram`.
+        trails: per channel the terms of the last fit, each with its blocks and the products so far; by `fit.gram`.
     """
 
     def __init__(self, views: Sequence[Any], residuals: Sequence[Residuals], floors: Sequence[Floors]) -> None:
@@ -25,7 +25,7 @@ class Whitened:
         self.residuals = list(residuals)
         self.floors = list(floors)
         self.fits: dict[tuple[int, ...], Any] = {}
-        self.trails: dict[Channel, list[tuple[Any, Any]]] = {}
+        self.trails: dict[Channel, list[Any]] = {}
         self.target: list[dict[Channel, Array]] = [
             {c: self.flat(r, c, x.values) for c, x in res.items() if x.ok.any()} for r, res in enumerate(self.residuals)
         ]
