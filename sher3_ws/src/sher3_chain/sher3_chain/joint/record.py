@@ -31,7 +31,7 @@ from sher3_chain.joint.counted import with_counted_clock
 from sher3_chain.joint.description import Axis, ChainDescription
 from sher3_chain.joint.fields import with_signs
 from sher3_chain.joint.moments import JITTER, Stamped, timed
-from sher3_chain.joint.speed import integrated, is_speed
+from sher3_chain.joint.speed import in_time, integrated, is_speed
 from sher3_chain.joint.units import check_units
 
 MIN_SAMPLES = 20
@@ -139,6 +139,7 @@ def _mended(column: Column, tables: Tables, clock: Clock, run: str, of: tuple[st
         stamps, x = _only(stamps, x, fresh)
         notes.append(f"{what} is held for {hold_of(fresh):.0f} rows: slower than the log; its new readings are taken")
     if of[1] in POSITIONS and is_speed(column, tables, run):
+        in_time(x, what)
         x = integrated(stamps, x, clock)
         notes.append(f"{what} is a velocity; integrated, so that places count from the first sample")
     return _late(stamps, x, column.late, clock)

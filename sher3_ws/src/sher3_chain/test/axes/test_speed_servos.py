@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from sher3_chain.joint.record import axes_run
 from sher3_diagnosis import diagnose
+from sher3_machines import MachineError
 from slides import described, machine
 
 PERIOD, LAG = 0.005, 0.06
@@ -38,6 +39,19 @@ def test_a_lag_is_found_whatever_the_positions_count_from(zeros):
     found = verdict.causes[0].parameters
     late = found["time_constant"].value + (found["delay"].value if "delay" in found else 0.0)
     assert late == pytest.approx(LAG, rel=0.1)
+
+
+def test_a_table_of_speeds_in_both_senses_is_no_record_in_time():
+    speeds = np.repeat(np.linspace(0.01, 0.3, 40), 2) * np.tile([1.0, -1.0], 40)
+    axis = {**SPEED, "signals": {"position": {"column": "w", "unit": "rad/s"}}, "command_law": {"kind": "none"}}
+    with pytest.raises(MachineError, match=r"turns back at every row.*give the record that the table was made of"):
+        axes_run("map", {"t": 0.1 * np.arange(80), "w": speeds}, described(**axis))
+
+
+def test_the_noise_of_a_speed_at_rest_is_one():
+    axis = {**SPEED, "signals": {"position": {"column": "w", "unit": "rad/s"}}, "command_law": {"kind": "none"}}
+    noise = np.random.default_rng(3).normal(size=300)
+    assert axes_run("rest", {"t": 0.1 * np.arange(300), "w": noise}, described(**axis)).ticks == 300
 
 
 WHEEL = {**SPEED, "signals": {name: {"column": name, "unit": "rad/s"} for name in ("position", "reference")}}
