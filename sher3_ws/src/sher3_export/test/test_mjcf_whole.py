@@ -61,9 +61,20 @@ def test_a_replicated_joint_is_one_of_its_own(robot):
     assert [model.joint(f"hip_{k}").frictionloss[0] for k in range(2)] == pytest.approx([0.3, 0.5])
 
 
-def test_a_joint_in_a_frame_is_not_parted_from_its_load(robot):
+def test_a_joint_in_a_frame_is_parted_from_its_load_where_the_frame_places_it(robot):
     done = export(verdict(cause("backlash", "shoulder", unit="rad", width=0.01)), "mjcf", robot())
-    assert "<frame>" in str(done.untold[0]) and not done.applied
+    model = mujoco.MjModel.from_xml_string(done.text)
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    plain = export(verdict(cause("coulomb_friction", "shoulder", force=0.1)), "mjcf", robot())
+    bare = mujoco.MjModel.from_xml_string(plain.text)
+    standing = mujoco.MjData(bare)
+    mujoco.mj_forward(bare, standing)
+    for joint in ("shoulder", "shoulder_play"):
+        assert data.joint(joint).xanchor == pytest.approx(standing.joint("shoulder").xanchor)
+        assert data.joint(joint).xaxis == pytest.approx(standing.joint("shoulder").xaxis)
+    assert data.body("upper").xpos == pytest.approx(standing.body("upper").xpos)
+    assert model.joint("shoulder_play").range == pytest.approx([-0.005, 0.005])
 
 
 def test_files_that_include_each_other_or_are_missing_are_refused(tmp_path):

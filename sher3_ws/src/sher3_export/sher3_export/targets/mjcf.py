@@ -11,10 +11,11 @@ from sher3_export.changes import Change
 from sher3_export.targets import mjcf_motor
 from sher3_export.targets.links import INERTIAL, WrongLinks
 from sher3_export.targets.mjcf_body import (
-    FRAME,
     body_around,
     class_value,
     controlled,
+    frames_around,
+    in_frames,
     inside,
     moved,
     payloads_on,
@@ -346,27 +347,27 @@ class Mjcf(XmlTarget):
 
         Two parallel joints of one body would do, but MuJoCo takes the joints of a body that only slides for orthogonal.
         """
-        if parents(self.root)[joint].tag == FRAME:
-            return "the joint is in a <frame>, not directly in its body; write it there"
         motor = self._inherited(joint, "armature") or LEAST
         joint.set("armature", written(motor))
         above = parents(self.root)
-        load = above[joint]
+        load = body_around(self.root, joint)
         world = above[load]
         place = {name: load.attrib.pop(name) for name in PLACE if name in load.attrib}
         of_class = {"childclass": load.attrib["childclass"]} if "childclass" in load.attrib else {}
         body = Element("body", {"name": f"{change.joint}_{what}_motor", **place, **of_class})
         world[list(world).index(load)] = body
         SubElement(body, "inertial", {"pos": "0 0 0", "mass": written(DUST), "diaginertia": written(*[DUST] * 3)})
-        before = [x for x in load.findall("joint")]
+        before = [*inside(load, "joint")]
         for held in before[: before.index(joint) + 1]:
-            load.remove(held)
-            body.append(held)
+            frames = frames_around(above, held)
+            above[held].remove(held)
+            body.append(in_frames(held, frames))
         same: dict[str, str] = {
             str(name): joint.attrib[name] for name in ("type", "axis", "pos", "class") if name in joint.attrib
         }
         plain = {"armature": written(LIGHT * motor), "frictionloss": "0", "stiffness": "0", "damping": "0"}
-        load.insert(0, Element("joint", {"name": f"{change.joint}_{what}", **same, **plain, "limited": "false", **law}))
+        second = Element("joint", {"name": f"{change.joint}_{what}", **same, **plain, "limited": "false", **law})
+        load.insert(0, in_frames(second, frames))
         body.append(load)
         return ""
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from copy import deepcopy
 from pathlib import PurePath
 from xml.etree.ElementTree import Element
@@ -63,6 +63,23 @@ def body_around(root: Element, element: Element) -> Element:
     while found.tag == FRAME:
         found = above[found]
     return found
+
+
+def frames_around(above: Mapping[Element, Element], element: Element) -> list[Element]:
+    """Return the frames that hold an element within its body, the innermost first; `above` are the parents of all."""
+    found = []
+    while (element := above[element]).tag == FRAME:
+        found.append(element)
+    return found
+
+
+def in_frames(element: Element, frames: Sequence[Element]) -> Element:
+    """Return an element within frames of their own that place it as those (the innermost first) do."""
+    for frame in frames:
+        around = Element(FRAME, {name: value for name, value in frame.attrib.items() if name != "name"})
+        around.append(element)
+        element = around
+    return element
 
 
 def class_value(root: Element, element: Element, attribute: str) -> str | None:
