@@ -66,7 +66,7 @@ def of_causes(one: Drawn) -> Fit:
 def of_truth(one: Drawn) -> Fit:
     """Return the fit of the true causes, each with its best shape beside the others; the true delay is given."""
     evidence = balance_of(one)
-    known = {e.id: e for e in one.machine.effects(evidence)}
+    known = {e.id: e for e in one.machine.of(evidence).effects(evidence)}
     candidates, terms = Candidates(evidence, list(known.values())), {}
     if one.late:
         shape = {"delay": one.late, "of_effort": 1.0, "least": 0.0}

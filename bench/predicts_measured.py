@@ -110,7 +110,7 @@ def balance_of(machine: Any, runs: Sequence[AxesRun]) -> Evidence:
 
 def all_of(case: Case, evidence: Evidence, names: Sequence[str]) -> Fit:
     """Return the fit of all these laws at every joint, each with its best shape beside the others."""
-    known = [e for e in case.machine.effects(evidence) if e.id in names]
+    known = [e for e in case.machine.of(evidence).effects(evidence) if e.id in names]
     candidates, terms = Candidates(evidence, known), {}
     for effect, site in ROUNDS * [(e, s) for e in known for s in candidates.sites(e)]:
         others = [t for key, t in terms.items() if key != (effect.id, site)]

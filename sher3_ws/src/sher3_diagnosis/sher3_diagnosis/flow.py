@@ -77,6 +77,7 @@ def diagnose(
 
 def find(machine: Machine[R, E], evidence: E, without: Collection[str], say: Say) -> Finding[E]:
     """Localise the gaps of one part of a machine, attribute them and quantify the causes."""
+    machine = machine.of(evidence)
     gaps = localise(evidence, nominal(evidence))
     significant = [g.channel for g in gaps if g.significant]
     candidates = Candidates(evidence, [e for e in machine.effects(evidence) if e.id not in without])

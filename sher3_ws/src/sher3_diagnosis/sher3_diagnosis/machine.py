@@ -68,6 +68,10 @@ class Machine(ABC, Generic[R, E]):
     def library(self) -> Sequence[Effect]:
         """Return every effect the machine may have."""
 
+    def of(self, evidence: E) -> Machine[R, E]:
+        """Return the machine that looks for the causes of one part; default this one. Parts of two kinds have two."""
+        return self
+
     def effects(self, evidence: E) -> Sequence[Effect]:
         """Return the effects that one part may have; default all of the library."""
         return self.library()

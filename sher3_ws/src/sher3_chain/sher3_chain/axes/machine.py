@@ -61,10 +61,12 @@ class Axes(Chain[AxisEvidence]):
         known = [page.on(any_axis) for kind in kinds for page in pages(kind)]
         return [*known, *pages("law"), computed(LIMIT)]
 
+    def of(self, evidence: AxisEvidence) -> Axes:
+        """Return these axes, or their commands."""
+        return Commands(self.described) if is_law(evidence) else self
+
     def effects(self, evidence: AxisEvidence) -> Sequence[Effect]:
         """Return the pages that can show in what was recorded of an axis."""
-        if is_law(evidence):
-            return pages("law")
         axis = evidence.axis
         nominal = NominalAxis(evidence.mass, axis.viscous, 0.0, 0.0, weighed=axis.swings)
         return [page.on(nominal) for page in pages(kind_of(axis), facts_of(axis))]
@@ -91,23 +93,17 @@ class Axes(Chain[AxisEvidence]):
         """Look for drives at their limit."""
         if computed(LIMIT).id in without:
             return []
-        found = (limit_finding(part.runs, part.axis) for part in evidence if not is_law(part))
+        found = (limit_finding(part.runs, part.axis) for part in evidence if self.of(part) is self)
         return [limit for limit in found if limit is not None]
 
     def plan(self, evidence: AxisEvidence) -> SearchPlan:
-        """Return how the causes of an axis, or of its command, are looked for."""
-        return LAW if is_law(evidence) else AXIS
-
-    def parted(self, evidence: AxisEvidence) -> list[tuple[Condition, frozenset[int]]]:
-        """Return the conditions of an axis; a command has none, since its law is stated once for all."""
-        return [] if is_law(evidence) else super().parted(evidence)
+        """Return how the causes of an axis are looked for."""
+        return AXIS
 
     def refine(
         self, evidence: AxisEvidence, causes: list[Cause], attribution: Attribution
     ) -> tuple[AxisEvidence, list[Cause]]:
         """Refine mass and forces of a free axis on its simulated motion, of a driven one away from its reversals."""
-        if is_law(evidence):
-            return evidence, causes
         free, servo, own = evidence.axis.free, evidence.axis.servo, evidence.axis.own_unit
         causes = causes if free else requantified(evidence, attribution, causes)
         causes = causes if free or servo else with_unseen(evidence, attribution, causes)
@@ -119,8 +115,6 @@ class Axes(Chain[AxisEvidence]):
 
     def remarks(self, finding: Finding[AxisEvidence]) -> list[str]:
         """Say which mass was found, what the recorded signals cannot tell, and how the axis runs again."""
-        if is_law(finding.evidence):
-            return law_notes(finding)
         again = replay(finding.evidence, finding.causes) if finding.significant else None
         changes = change_notes(finding.evidence, finding.attribution, self.parted(finding.evidence))
         untold = finding.evidence.untold
@@ -142,7 +136,7 @@ class Axes(Chain[AxisEvidence]):
 
     def unjudged(self, finding: Finding[AxisEvidence]) -> dict[Channel, str]:
         """Say where the floor of an axis without a gap eats its force, or what a servo was asked."""
-        return {} if is_law(finding.evidence) else unjudged(finding, partial(_signal, finding.evidence))
+        return unjudged(finding, partial(_signal, finding.evidence))
 
     def reporter(self) -> AxesReporter:
         """Return the part of this machine in a report."""
@@ -152,8 +146,36 @@ class Axes(Chain[AxisEvidence]):
 
     def end_to_end(self, findings: Sequence[Finding[AxisEvidence]], causes: Sequence[Cause]) -> Interval | None:
         """Return the closure of the position of the first axis that can be run again."""
-        runs_again = (replay(f.evidence, f.causes) for f in findings if f.significant and not is_law(f.evidence))
+        moved = (f for f in findings if f.significant and self.of(f.evidence) is self)
+        runs_again = (replay(f.evidence, f.causes) for f in moved)
         return next((again.closure for again in runs_again if again is not None), None)
+
+
+@dataclass(frozen=True)
+class Commands(Axes):
+    """The commands of the axes, each against its law: parts beside those of the axes themselves."""
+
+    def effects(self, evidence: AxisEvidence) -> Sequence[Effect]:
+        """Return the pages for commands."""
+        return pages("law")
+
+    def plan(self, evidence: AxisEvidence) -> SearchPlan:
+        """Return how the causes of a command are looked for."""
+        return LAW
+
+    def parted(self, evidence: AxisEvidence) -> list[tuple[Condition, frozenset[int]]]:
+        """Return no condition: a law is stated once for all."""
+        return []
+
+    def refine(
+        self, evidence: AxisEvidence, causes: list[Cause], attribution: Attribution
+    ) -> tuple[AxisEvidence, list[Cause]]:
+        """Return both as they are: a law is exact."""
+        return evidence, causes
+
+    def remarks(self, finding: Finding[AxisEvidence]) -> list[str]:
+        """Say whether the command is what its law states."""
+        return law_notes(finding)
 
 
 def _signal(evidence: AxisEvidence, r: int, site: str, ok: Mask) -> Array:

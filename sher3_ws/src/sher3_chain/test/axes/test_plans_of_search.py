@@ -20,7 +20,7 @@ def parts():
 
 def test_an_axis_its_command_and_a_joint_have_plans_of_their_own(parts, tmp_path):
     arm, found = parts
-    assert [arm.plan(part) for part in found] == [AXIS, LAW]
+    assert [arm.of(part).plan(part) for part in found] == [AXIS, LAW]
     assert lift(tmp_path / "lift.urdf").plan(None) is JOINT
     assert all(plan.down_to_floor for plan in (AXIS, LAW, JOINT))
     with pytest.raises(FrozenInstanceError):
