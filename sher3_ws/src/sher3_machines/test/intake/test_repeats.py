@@ -60,3 +60,10 @@ def test_a_reference_in_steps_is_meant_and_one_that_goes_on_is_a_path():
 def test_a_second_encoder_that_counts_backwards_is_told_by_the_motion():
     assert counts_backwards(3.0 - 0.9 * PLACE, PLACE) and not counts_backwards(0.9 * PLACE, PLACE)
     assert not counts_backwards(np.zeros(N), PLACE) and not counts_backwards(-EFFORT, PLACE)
+
+
+def test_wheels_that_set_off_from_rest_were_not_polled_twice():
+    """Speeds of two wheels, told to go for a second and to stop for a fifth of one, in hundredths of a rad/s."""
+    going = (np.arange(N) % 60) > 10
+    speeds = [np.round(np.where(going, 5.0 + side * PLACE + 0.05 * EFFORT, 0.0), 2) for side in (1.0, -1.0)]
+    assert fresh_rows([*speeds, np.where(going, 5.0, 0.0)]).all()

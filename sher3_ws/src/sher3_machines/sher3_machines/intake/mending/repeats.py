@@ -1,7 +1,8 @@
 """Rows that a logger polled twice, and channels that are slower than the log: a repeated reading is no sample.
 
 A value that stays although its axis moves is told by what follows it: the next reading jumps by many of the smallest
-steps of its column. A coarse encoder that moves slowly repeats its counts too, and goes on by one of them.
+steps of its column. A coarse encoder that moves slowly repeats its counts too, and goes on by one of them. Rows of
+nothing but zeros are of wheels at rest, whose speed sets off with a jump.
 """
 
 from __future__ import annotations
@@ -29,7 +30,9 @@ JUMP = 4.0
 be followed so."""
 
 
-def repeats(x: Array, least: float, longest: float = LONGEST_HOLD, usual: float = USUAL_HOLD) -> Mask:
+def repeats(
+    x: Array, least: float, longest: float = LONGEST_HOLD, usual: float = USUAL_HOLD, zeros: bool = True
+) -> Mask:
     """Return (n,) True where a row of readings (n, m) repeats the one before without being a sample of its own.
 
     Args:
@@ -37,11 +40,13 @@ def repeats(x: Array, least: float, longest: float = LONGEST_HOLD, usual: float 
         least: share of the rows from which repeats say anything.
         longest: rows in a row that may repeat one.
         usual: the same as a median.
+        zeros: whether readings of nothing but zeros may repeat one.
     """
     out = np.zeros(len(x), dtype=bool)
     change = np.diff(x, axis=0)
     first, last = stretches(x)
     short = (last - first <= longest) & (last + 1 < len(x))
+    short &= zeros | (x[first] != 0.0).any(axis=1)
     for a, b in zip(first[short], last[short], strict=True):
         out[a + 1 : b + 1] = True
     if out.sum() < max(FEWEST, least * len(x)) or np.median((last - first)[short]) > usual:
@@ -66,7 +71,7 @@ def smallest_steps(change: Array) -> Array:
 def fresh_rows(columns: Sequence[Array]) -> Mask:
     """Return (n,) False where a row repeats its predecessor in all columns (n,) or (n, ...)."""
     flat = [np.nan_to_num(np.asarray(x, dtype=float).reshape(len(x), -1)) for x in columns]
-    return ~repeats(np.hstack(flat), POLLED)
+    return ~repeats(np.hstack(flat), POLLED, zeros=False)
 
 
 def fresh_readings(x: Array, steps: bool = True) -> Mask:
