@@ -65,15 +65,14 @@ def _both_ways(x: Array, section: Array, rest: Array) -> Array:
         for i in range(PAD):
             line[i] = 2.0 * x[0, c] - x[PAD - i, c]
             line[n + PAD + i] = 2.0 * x[n - 1, c] - x[n - 2 - i, c]
-        for _ in range(2):
-            s1, s2 = rest[0] * line[0], rest[1] * line[0]
+        for first, step in ((0, 1), (len(line) - 1, -1)):
+            s1, s2 = rest[0] * line[first], rest[1] * line[first]
             for i in range(len(line)):
-                v = line[i]
+                v = line[first + step * i]
                 y = section[0] * v + s1
                 s1 = section[1] * v - section[4] * y + s2
                 s2 = section[2] * v - section[5] * y
-                line[i] = y
-            line = line[::-1].copy()
+                line[first + step * i] = y
         out[:, c] = line[PAD : PAD + n]
     return out
 

@@ -130,7 +130,7 @@ def gather_arm_motion(
     shares = {name: found[name].turned() for name in unknown}
     factors = np.array([shares[j.name].value if j.name in shares else 1.0 for j in described.joints])
     nominal = (model, factors) if inertias is None else (inertias.model(model), factors, inertias.at(described.joints))
-    views = seen_by(*nominal)
+    views = plain if inertias is None and not shares else seen_by(*nominal)
     residuals = [_residuals(view, judged) for view in views]
     if not any(residuals):
         raise not_judged(judged, signals, slips)

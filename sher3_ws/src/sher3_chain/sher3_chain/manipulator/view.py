@@ -59,6 +59,7 @@ class MotionView(ChainView):
         self.shares = shares
         self._payload: dict[tuple[str, tuple[float, ...]], dict[str, Array]] = {}
         self._orders: dict[tuple[str, int], list[float]] = {}
+        self._columns: dict[str, Array] = {}
 
     # what the effects read
 
@@ -94,12 +95,12 @@ class MotionView(ChainView):
                 c h^T + h c^T - m c c^T.
         """
         if (link, centre) not in self._payload:
-            columns = self.regressor_of_joints[..., self._parameters_of(link)]
-            out = columns[..., :LINKS_OF_PAYLOAD].copy()
             own = point_inertia(np.array(centre))
             both = [point_inertia(np.array(centre) + e) - own - point_inertia(e) for e in np.eye(3)]
-            out += columns[..., LINKS_OF_PAYLOAD:] @ np.column_stack([-own, *both])
-            self._payload[link, centre] = self._of_joints(out)
+            law = np.vstack([np.eye(LINKS_OF_PAYLOAD), np.column_stack([-own, *both])])
+            columns = self._columns_of(link)
+            forces = (columns.reshape(-1, PARAMETERS) @ law).reshape(*columns.shape[:2], LINKS_OF_PAYLOAD)
+            self._payload[link, centre] = self._of_joints(forces)
         return self._payload[link, centre]
 
     def link(self, link: str) -> dict[str, Array]:
@@ -126,6 +127,12 @@ class MotionView(ChainView):
             self._orders[joint, count] = orders_in(left[ok], self.position[ok, row], self.velocity[ok, row], count)
         return self._orders[joint, count]
 
+    def _columns_of(self, link: str) -> Array:
+        """Return the force per inertial parameter of a link on every joint, (g, k, 10), side by side in memory."""
+        if link not in self._columns:
+            self._columns[link] = np.ascontiguousarray(self.regressor_of_joints[..., self._parameters_of(link)])
+        return self._columns[link]
+
     def _parameters_of(self, link: str) -> slice:
         """Return where the inertial parameters of a link are."""
         first = PARAMETERS * self.model.links.index(link)
@@ -134,7 +141,7 @@ class MotionView(ChainView):
     def _of_joints(self, forces: Array) -> dict[str, Array]:
         """Return joint -> (g, p) of forces on the joints (g, k, p), as the motors feel them; those that feel any."""
         felt = self._on_motors(forces) * self.shares[:, None]
-        most = np.abs(felt).max(axis=(0, 2))
+        most = np.sqrt(np.einsum("gjp,gjp->j", felt, felt))
         return {name: felt[:, row] for row, name in enumerate(self.model.names) if most[row] > ROUNDED * most.max()}
 
     @cached_property
@@ -206,7 +213,8 @@ class MotionView(ChainView):
 
     def _on_motors(self, forces: Array) -> Array:
         """Bring forces on the joints (g, k, p) to the motors: tau_joint = coupling^T tau_motor."""
-        return np.einsum("ji,gjp->gip", np.linalg.inv(self.coupling), forces)
+        alone = np.array_equal(self.coupling, np.eye(len(self.coupling)))
+        return forces if alone else np.einsum("ji,gjp->gip", np.linalg.inv(self.coupling), forces)
 
     @cached_property
     def inertia(self) -> Array:

@@ -6,7 +6,6 @@ A channel that is not connected must not become a cause. It is named and left ou
 from __future__ import annotations
 
 from collections.abc import Mapping
-from itertools import pairwise
 
 import numpy as np
 from sher3_diagnosis.channel import Array, Mask
@@ -131,7 +130,8 @@ def stays_over(load: Array, position: Array) -> float:
 def stays(x: Array) -> list[tuple[int, int]]:
     """Return, for each long stretch of a signal (n,) at one reading, its first sample and the first one after it."""
     edges = np.concatenate([[0], np.flatnonzero(np.diff(x) != 0.0) + 1, [len(x)]])
-    return [(int(a), int(b)) for a, b in pairwise(edges) if b - a >= LONGEST]
+    long = np.flatnonzero(np.diff(edges) >= LONGEST)
+    return [(int(edges[i]), int(edges[i + 1])) for i in long]
 
 
 def without_wrong(run: AxesRun, axis: Axis) -> AxesRun:

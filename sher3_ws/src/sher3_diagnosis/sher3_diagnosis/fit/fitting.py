@@ -88,13 +88,18 @@ def fit(data: Whitened, terms: Sequence[Term]) -> Fit:
 
 def connected(terms: Sequence[Term]) -> list[list[int]]:
     """Return the indices of terms in groups that share channels."""
-    groups: list[tuple[set[Channel], list[int]]] = []
+    group: dict[Channel, list[int]] = {}
+    apart: list[list[int]] = []
     for i, term in enumerate(terms):
-        touching = [g for g in groups if g[0] & term.channels]
-        channels = set(term.channels).union(*(g[0] for g in touching))
-        members = sorted([i, *(k for g in touching for k in g[1])])
-        groups = [g for g in groups if g not in touching] + [(channels, members)]
-    return [members for _, members in groups]
+        touching = {id(found): found for c in term.channels if (found := group.get(c)) is not None}
+        first, *others = touching.values() if touching else ([],)
+        for members in others:
+            first += members
+            group.update((c, first) for k in members for c in terms[k].channels)
+        first.append(i)
+        group.update((c, first) for c in term.channels)
+        apart += [] if term.channels else [first]
+    return [sorted(members) for members in (*apart, *{id(x): x for x in group.values()}.values())]
 
 
 def _part(data: Whitened, terms: tuple[Term, ...]) -> _Part:

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 from sher3_diagnosis.channel import Array, Channel
-from sher3_diagnosis.effect import Effect, Shape
+from sher3_diagnosis.effect import Effect, Shape, Signature
 from sher3_diagnosis.fit.fitting import Fit
 from sher3_diagnosis.localise.gaps import gap_of
 from sher3_diagnosis.quantify.closure import residual_after
@@ -83,10 +83,12 @@ def shows(evidence: AxisEvidence, after: Fit, page: Effect, shape: Shape) -> boo
 
 def _of_runs(evidence: AxisEvidence, channel: Channel, runs: Any, pages: Sequence[tuple[Effect, Shape]]) -> Array:
     """Return the columns (N, p) of some pages on the samples that count of some runs."""
-    rows = []
+    rows, seen = [], dict[int, list[Signature]]()
     for r in runs:
         ok, view = evidence.data.residuals[r][channel].ok, evidence.views[r]
-        found = [page.signature(view, channel.actuator, shape) for page, shape in pages]
+        if id(view) not in seen:  # blocks of one record share its view
+            seen[id(view)] = [page.signature(view, channel.actuator, shape) for page, shape in pages]
+        found = seen[id(view)]
         parts = [x.columns[channel][ok, 0] if channel in x.columns else x.fixed[channel][ok] for x in found]
         rows.append(np.concatenate(parts, axis=1))
     return np.concatenate(rows)

@@ -68,6 +68,8 @@ class Losses:
 
     def dry(self, q: Array, v: Array, a: Array) -> Array:
         """Return the force that dry friction needs at positions, velocities and accelerations (n, k), (n, k)."""
+        if not (self._model.dof_frictionloss.any() or self._model.tendon_frictionloss.any()):
+            return np.zeros_like(q)
         return -self._forces(q, v - self._lag * a, a)[1]
 
     def _forces(self, q: Array, v: Array, a: Array) -> tuple[Array, Array]:
