@@ -15,6 +15,7 @@ from sher3_machines.thresholds import BLOCKS
 
 from sher3_chain.chain.evidence import ChainEvidence, in_blocks
 from sher3_chain.constants import ZERO, constants
+from sher3_chain.joint.conditions import conditions_of, reference_runs
 from sher3_chain.joint.own_unit import RECORDED
 from sher3_chain.joint.record import AxesRun
 from sher3_chain.manipulator.description import PER_RUN, Joint, ManipulatorDescription
@@ -125,7 +126,12 @@ def gather_arm_motion(
     if turned or own:
         signals = _put_right(signals, described, turned, scales)
         plain = seen_by(model, np.ones(n))
-    inertias = identified_inertias(plain, model, judged) if described.inertias == "identified" else None
+    inertias = None
+    if described.inertias == "identified":
+        names = [run.name for run in runs]
+        reference = reference_runs(conditions_of(described.conditions, names), names)
+        kept = [view for view, name in zip(plain, names, strict=True) if name in reference]
+        inertias = identified_inertias(kept, model, judged)
     unknown = [j.name for j in described.joints if j.gain == "unknown" and j.name in judged]
     shares = {name: found[name].turned() for name in unknown}
     factors = np.array([shares[j.name].value if j.name in shares else 1.0 for j in described.joints])

@@ -28,7 +28,7 @@ from sher3_chain.joint.own_unit import RECORDED, in_own_unit
 from sher3_chain.joint.record import AxesRun
 from sher3_chain.manipulator.causes.confounding import GAIN, PAYLOAD, WEIGHT, confounding_notes, same_force
 from sher3_chain.manipulator.causes.lateness import LATE, late_efforts, timing_notes, with_closure, with_late_readings
-from sher3_chain.manipulator.causes.payload import centred
+from sher3_chain.manipulator.causes.payload import about_its_own
 from sher3_chain.manipulator.causes.plan import JOINT
 from sher3_chain.manipulator.causes.search import causes_of_arm
 from sher3_chain.manipulator.description import BEHIND, ManipulatorDescription
@@ -79,7 +79,7 @@ class Manipulator(Chain[ArmMotionEvidence]):
             facts.add("lead")
         known = of_joints(facts)
         contained: tuple[str, ...] = IN_GAIN if evidence.shares or evidence.scales else ()
-        contained = IN_INERTIAS if self.described.inertias == "identified" else contained
+        contained = IN_INERTIAS if self._in_inertias and not self.described.conditions else contained
         return [e for e in known if e.scales not in contained]
 
     def gather(self, runs: Sequence[AxesRun]) -> Sequence[ArmMotionEvidence]:
@@ -108,12 +108,19 @@ class Manipulator(Chain[ArmMotionEvidence]):
         return JOINT
 
     def causes(self, evidence: ArmMotionEvidence, candidates: Candidates, left_over: Left, say: Say) -> Attribution:
-        """Choose the causes joint by joint, without and with a payload."""
+        """Choose the causes joint by joint, without and with a payload; none that identified inertias contain."""
+        if self._in_inertias:
+            candidates = Candidates(evidence, [e for e in candidates.effects if e.scales not in IN_INERTIAS])
         return causes_of_arm(evidence, candidates, say)
+
+    @property
+    def _in_inertias(self) -> bool:
+        """Whether what multiplies the model's forces is in its inertias."""
+        return self.described.inertias == "identified"
 
     def finished(self, candidates: Candidates, found: Fit) -> Fit:
         """Return the fit of a change with the inertia of a payload about its own centre."""
-        return centred(candidates, found)
+        return about_its_own(candidates, found)
 
     def refine(
         self, evidence: ArmMotionEvidence, causes: list[Cause], attribution: Attribution
@@ -149,9 +156,10 @@ class Manipulator(Chain[ArmMotionEvidence]):
                 f"{BEHIND}forces, frictions and rotors are those of the motors, by their own travel; of a "
                 "gear of n alone, a joint has n times the dry friction and n^2 times the viscous one and the rotor"
             )
-        if self.described.inertias == "identified":
+        if self._in_inertias:
+            where = "the runs of the reference" if self.described.conditions else "the data"
             notes.append(
-                "inertias identified from the data: drive gain, weight and payload are in them, cannot be told apart "
+                f"inertias identified from {where}: drive gain, weight and payload are in them, cannot be told apart "
                 "and are not looked for; `sher3 gap export` writes them into a model"
             )
         notes += [*stop_notes(evidence), *timing_notes(finding.causes)]

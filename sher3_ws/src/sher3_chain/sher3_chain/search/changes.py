@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from typing import Any, TypeVar
 
 import numpy as np
-from sher3_diagnosis.attribute.candidates import Candidates, complexity, cost
+from sher3_diagnosis.attribute.candidates import Candidates, complexity, cost, possible
 from sher3_diagnosis.attribute.rivals import Attribution, without_term
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.effect import Effect, Shape, Signature
@@ -188,9 +188,19 @@ def _trials(
             changed = Changed(effect, condition, views, have.get((effect.id, site)))
             candidates = Candidates(evidence, [changed])
             found = candidates.best(changed, site, current.terms)
-            if found is not None:
-                out.append(finish(candidates, found))
+            if found is None and effect.about:
+                found = _begun(candidates, changed, site, current.terms)
+            trial = None if found is None else finish(candidates, found)
+            if trial is not None and possible(trial):
+                out.append(trial)
     return out
+
+
+def _begun(candidates: Candidates, effect: Effect, site: str, given: Sequence[Term]) -> Fit | None:
+    """Return the fit with an effect in its first shape, about which it may not be possible yet; None without one."""
+    evidence = candidates.evidence
+    terms = [candidates.term(effect, site, shape) for shape in effect.shapes(evidence.views, site)[:1]]
+    return fit(evidence.data, [*given, *terms]) if terms and terms[0].channels else None
 
 
 def _other(a: Term, b: Term) -> bool:

@@ -4,7 +4,7 @@ import re
 
 import numpy as np
 import pytest
-from lifts import L, friction, machine, motion, needed, run_of
+from lifts import URDF, L, friction, machine, motion, needed, run_of
 from sher3_chain.joint.record import AxesRun
 from sher3_diagnosis import diagnose
 from sher3_machines import MachineError
@@ -34,6 +34,19 @@ def test_a_payload_between_two_runs_is_named_with_mass_and_centre(tmp_path):
     common = {(c.effect, c.actuator): c.parameters for c in verdict.causes if not c.condition}
     assert common["coulomb_friction", "lift"]["force"].value == pytest.approx(8.0, rel=0.06)
     assert any("payload cup against none, all else held common: payload_mass" in n for n in verdict.notes)
+
+
+def test_a_payload_is_told_beside_inertias_that_the_reference_has(tmp_path):
+    """The model's links weigh half of the real ones; what hangs on them in the other run is no inertia of theirs."""
+    rough = URDF.replace('mass value="2.0"', 'mass value="1.0"').replace('mass value="4.0"', 'mass value="2.0"')
+    conditions = {"a": {"payload": "none"}, "b": {"payload": "cup"}}
+    arm = machine(tmp_path / "lift.urdf", text=rough, inertias="identified", conditions=conditions)
+    verdict = diagnose(arm, [recorded("a", 0.0), recorded("b", 0.7, extra=0.5)]).verdict
+    found = changes(verdict)
+    assert set(found) == {("payload_mass", "pendulum")}
+    assert found["payload_mass", "pendulum"].parameters["mass"].value == pytest.approx(0.5, rel=0.1)
+    assert any("identified from the runs of the reference" in note for note in verdict.notes)
+    assert not {c.effect for c in verdict.causes} & {"gravity_load", "torque_constant"}
 
 
 def test_a_repaired_joint_has_less_friction_than_before(tmp_path):

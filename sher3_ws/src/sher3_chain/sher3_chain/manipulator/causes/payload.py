@@ -111,7 +111,7 @@ def _at(
     term = candidates.term(page, link, {})
     if not term.channels:
         return None
-    trial = _about(candidates, fit(evidence.data, [*plain, term]))
+    trial = about_its_own(candidates, fit(evidence.data, [*plain, term]))
     found = without_impossible(evidence, trial) if possible(trial) else trial
     if found.terms[-1].effect is not page or not possible(found):
         return None
@@ -120,7 +120,7 @@ def _at(
     return found if not model.mass or mass < HEAVIEST * model.mass else None
 
 
-def _about(candidates: Candidates, found: Fit) -> Fit:
+def about_its_own(candidates: Candidates, found: Fit) -> Fit:
     """Return a fit with the last term about its own centre, looked for outwards where no centre is found from `found`.
 
     Its weight tells mass times distance, and which way; the distance, and with it the mass, is told by its inertia.
