@@ -1,116 +1,161 @@
-"""Bench: whether one more experiment settles what a verdict leaves at odds between 10 and 90 %.
+"""Bench: whether the experiment that a verdict names settles its odds, and whether it promised as much.
 
-    nice python bench/settle.py EVIDENCE --most 20      # EVIDENCE: folder of `sher3 gap calibrate --drawn --kept`
+    nice python bench/settle.py --seeds 150000:150040      # robots that move too little to tell rivals apart
 
-For every drawn case of which a cause has such odds, the same robot is simulated again with the runs it had and with the
-excitation that shows the cause best, twice in each of two postures that the case had not used. Printed are the odds of
-the library before and after, whether they are settled then (95 % one way) and right, and both shares with their
-intervals; beside it the mean of the more probable answer's odds, which is how often it should be right.
+Every robot is drawn, simulated and diagnosed. Where the best bet of the first place has odds between 10 and 90 % and
+the verdict foretells what an experiment makes of them, the same robot runs this experiment, and the case with all of
+its runs is diagnosed again; where that does not settle it (95 %), what the new verdict names follows. Printed are the
+odds of that bet before, as expected, and of the likeliest answer after each experiment, and the shares with their
+intervals.
 """
 
 from __future__ import annotations
 
 import argparse
 import time
-from collections.abc import Iterator
-from dataclasses import replace
-from pathlib import Path
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any, TypeGuard
 
+import numpy as np
 from sher3_challenge.calibration.drawn import plan_of
-from sher3_challenge.calibration.held_out import item_of
-from sher3_challenge.calibration.labels import answer_of
-from sher3_challenge.calibration.observe import Observation, observed_on, stored
+from sher3_challenge.calibration.labels import equal
 from sher3_challenge.cases.plan import RUN_SPACING_NS, CasePlan
 from sher3_challenge.plants.plant import RunPlan
 from sher3_common.numbers.shares import wilson
 from sher3_description import Robot, load_robot
-from sher3_diagnosis.finding import LIBRARY
-from sher3_diagnosis.judge.calibration.calibration import in_force
-from sher3_diagnosis.judge.probabilities import judged
-from sher3_effects import library
+from sher3_diagnosis.verdict import Answer, NextExperiment, Place, Verdict
 from sher3_gap.case.loading import signals_of
-from sher3_gap.excitation import POSTURES, excite
-from sher3_gap.sher import Sher
+from sher3_gap.excitation import excite
+from sher3_gap.experiments.foreseen import APART, REPEATS, TRACKED, WARMED, WARMER
+from sher3_gap.sher import diagnose_runs
 
+PLANTS = ("lumped", "tables", "mujoco")
 OPEN, SETTLED = (0.10, 0.90), 0.95
-MORE, REPEATS = 2, 2
-"""Postures that are added, and runs in each."""
+MOST = 3
+"""Experiments that are made one after the other, each the one that the last verdict names."""
 
 
-def odds_of(row: dict) -> float:
-    """Return the probability that a kept cause is the library's."""
-    return judged(item_of(row), in_force()).library
+@dataclass(frozen=True)
+class Settled:
+    """What became of an open place.
+
+    Attributes:
+        before: odds of its best bet.
+        expected: odds of the effect at work, after the experiment that the verdict names.
+        after: odds of the likeliest answer after each experiment, and whether it is right.
+    """
+
+    before: float
+    expected: float
+    after: tuple[tuple[float, bool], ...]
+
+    def by(self, experiments: int) -> tuple[float, bool]:
+        """Return the answer after so many experiments, or after the last one made."""
+        return self.after[:experiments][-1]
 
 
-def doubts(folder: Path) -> Iterator[tuple[Observation, Observation, dict]]:
-    """Yield observations with that of the whole library and their cause whose odds are open; the first of each case."""
-    for file in sorted(folder.rglob("drawn_*.json")):
-        rows = stored(file)
-        for seen in rows:
-            causes = [x for x in seen.items if x["index"] is not None and answer_of(seen, x, rows[0]) is not None]
-            open_ = [x for x in causes if OPEN[0] < odds_of(x) < OPEN[1]]
-            if open_:
-                yield seen, rows[0], open_[0]
-                break
-
-
-def further(plan: CasePlan, effect: str, robot: Robot) -> tuple[RunPlan, ...]:
-    """Return the runs of a plan and those of the excitation that shows an effect best, in other postures."""
-    label, last = library()[effect].best.excitation, plan.runs[-1].stamp
-    used = {tuple(r.excitation.position[0]) for r in plan.runs}
-    fresh = [e for p in POSTURES if tuple((e := excite(label, robot, posture=p)).position[0]) not in used][:MORE]
-    new = [(e, k) for e in fresh for k in range(REPEATS)]
-    extra = [RunPlan(e, k, last + (n + 1) * RUN_SPACING_NS, plan.seed + 7 * n + 1) for n, (e, k) in enumerate(new)]
-    return (*plan.runs, *extra)
-
-
-def again(seen: Observation, effect: str, robot: Robot) -> list[Observation]:
-    """Return the observation of the same robot with more runs."""
-    seed = int(seen.case.split("_")[1])
-    kind = seen.truth["kind"] if seen.truth["kind"] != "withheld" else "single"
-    plan, _ = plan_of(robot, seen.plant, kind, seed)
-    plan = replace(plan, runs=further(plan, effect, robot))
+def signals(plan: CasePlan, runs: Sequence[RunPlan], robot: Robot) -> list[Any]:
+    """Return the signals of a robot's runs."""
     made, first = plan.plant(robot), min(r.stamp for r in plan.runs)
-    runs = [
-        replace(signals_of(made.run(p), robot, f"run {i}"), session_time=(p.stamp - first) * 1e-9)
-        for i, p in enumerate(plan.runs)
+    return [
+        replace(signals_of(made.run(p), robot, f"run at {p.stamp}"), session_time=(p.stamp - first) * 1e-9)
+        for p in runs
     ]
-    libraries = [(), seen.without] if seen.without else [()]
-    return observed_on(Sher(robot), seen.plant, seen.case, seen.truth, runs, libraries)
+
+
+def run_again(plan: CasePlan, asked: NextExperiment, taken: int, robot: Robot) -> list[Any]:
+    """Return the signals of an experiment that follows `taken` runs, with what it adds."""
+    climate = replace(plan.climate, start=plan.climate.start + WARMER * (asked.added == WARMED))
+    other = replace(plan, climate=climate, tracker=plan.tracker or asked.added == TRACKED)
+    names = [
+        replace(excite(asked.excitation, robot, posture=p), name=f"{asked.excitation}_in_{p}") for p in APART
+    ]  # no repeats of what the case has in other postures
+    new = [(e, k) for e in names for k in range(REPEATS)]
+    first = min(r.stamp for r in plan.runs)
+    runs = [
+        RunPlan(e, k, first + (taken + n) * RUN_SPACING_NS, plan.seed + 7 * (taken + n)) for n, (e, k) in enumerate(new)
+    ]
+    return signals(other, runs, robot)
+
+
+def is_right(answer: Answer, plan: CasePlan) -> bool:
+    """Whether an answer holds nothing but true effects."""
+    true = {f.kind.effect for f in plan.faults}
+    return bool(answer.causes) and all(equal(c.effect, true) for c in answer.causes)
+
+
+def named(answer: Answer) -> str:
+    """Return the effects of an answer, or what it is."""
+    return " + ".join(c.effect for c in answer.causes) or str(answer.answer)
+
+
+def foretold(asked: NextExperiment | None) -> TypeGuard[NextExperiment]:
+    """Whether an experiment is named, and what it would make of the odds."""
+    return asked is not None and asked.expected_odds is not None
+
+
+def same_place(verdict: Verdict, before: Place) -> Place | None:
+    """Return the place that an earlier verdict had."""
+    return next((p for p in verdict.places if (p.stage, p.actuator) == (before.stage, before.actuator)), None)
+
+
+def settled(seed: int, kind: str, robot: Robot) -> Settled | None:
+    """Draw a case, run what its verdicts name until its first place is settled, and say what became of it."""
+    plan, _ = plan_of(robot, PLANTS[seed % 3], kind, seed)
+    runs = signals(plan, plan.runs, robot)
+    verdict = diagnose_runs(runs, robot).verdict
+    place = next(iter(verdict.places), None)
+    bet, asked = None if place is None else place.bet, verdict.next_experiment
+    if place is None or bet is None or not foretold(asked) or not OPEN[0] < bet.probability < OPEN[1]:
+        print(f"{plan.truth.name} {seed}: no open bet", flush=True)
+        return None
+    expected, after = asked.expected_odds, []
+    true = " + ".join(f.kind.effect for f in plan.faults)
+    said = f"{plan.truth.name} {seed}: {true}; {named(bet)} {bet.probability:.2f}"
+    while foretold(asked) and len(after) < MOST:
+        runs += run_again(plan, asked, len(runs), robot)
+        verdict = diagnose_runs(runs, robot).verdict
+        found = same_place(verdict, place)
+        likely = found.answers[0] if found else Answer(answer="no_gap", probability=0.0)
+        after.append((likely.probability, is_right(likely, plan)))
+        said += (
+            f"; {asked.excitation}{' with ' * bool(asked.added)}{asked.added}, {asked.expected_odds:.2f} expected: "
+            f"{named(likely)} {likely.probability:.2f} {'right' if after[-1][1] else 'wrong'}"
+        )
+        if likely.probability >= SETTLED:
+            break
+        asked = verdict.next_experiment
+    print(said, flush=True)
+    return Settled(bet.probability, expected, tuple(after))
 
 
 def main() -> None:
     """Print a line for each case, and the shares."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("folder", type=Path)
-    parser.add_argument("--most", type=int, default=40, help="cases")
+    parser.add_argument("--seeds", default="150000:150040", help="A:B")
+    parser.add_argument("--kind", default="under_excited", help="of case")
     parser.add_argument("--seconds", type=float, default=480.0, help="of the processor, at which no case is begun")
     options = parser.parse_args()
     robot, found = load_robot(), []
-    for seen, whole, row in list(doubts(options.folder))[: options.most]:
+    for seed in range(*map(int, options.seeds.split(":"))):
         if time.process_time() > options.seconds:
             break
-        effect, site = row["candidates"][0]["effect"], row["candidates"][0]["site"]
-        rows = again(seen, effect, robot)
-        right = answer_of(seen, row, whole) == LIBRARY
-        same = [
-            x for x in rows[-1].items if x["index"] is not None and x["channel"] == row["channel"]
-            and (x["candidates"][0]["effect"], x["candidates"][0]["site"]) == (effect, site)
-        ]  # fmt: skip
-        before, after = odds_of(row), odds_of(same[0]) if same else 0.0
-        found.append((before, after, right))
-        gone = "" if same else " (another cause is named)"
-        print(f"{seen.plant} {seen.case}{' without' if seen.without else ''}: {effect} on {site}, "
-              f"{'right' if right else 'wrong'}: {before:.2f} -> {after:.2f}{gone}", flush=True)  # fmt: skip
-    settled = [(p, right) for _, p, right in found if max(p, 1.0 - p) >= SETTLED]
-    good = sum((p >= 0.5) == right for p, right in settled)
-    for name, k, n in (("settled", len(settled), len(found)), ("of these right", good, len(settled))):
-        if n:
-            low, high = wilson(k / n, n)
-            print(f"{name}: {k} of {n}, {k / n:.2f} [{low:.2f}, {high:.2f}]")
+        found += [x] if (x := settled(seed, options.kind, robot)) else []
+    for experiments in range(1, MOST + 1):
+        answers = [x.by(experiments) for x in found]
+        sure = [right for p, right in answers if p >= SETTLED]
+        print(f"after {experiments}: mean odds {np.mean([p for p, _ in answers]):.2f}")
+        for name, k, n in (
+            ("settled and right", sum(sure), len(found)),
+            ("of the settled right", sum(sure), len(sure)),
+        ):
+            if n:
+                low, high = wilson(k / n, n)
+                print(f"  {name}: {k} of {n}, {k / n:.2f} [{low:.2f}, {high:.2f}]")
     if found:
-        print(f"more probable answer: {sum(max(p, 1 - p) for p, _, _ in found) / len(found):.2f} before, "
-              f"{sum(max(p, 1 - p) for _, p, _ in found) / len(found):.2f} after")  # fmt: skip
+        print(f"mean odds {np.mean([x.before for x in found]):.2f} before, "
+              f"{np.mean([x.expected for x in found]):.2f} expected after one")  # fmt: skip
 
 
 if __name__ == "__main__":

@@ -7,9 +7,9 @@ here is the same for all machines.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any, Generic, TypeVar
+from typing import Any, Generic, NamedTuple, TypeVar
 
 from sher3_common.progress import Say
 
@@ -23,6 +23,7 @@ from sher3_diagnosis.effect import Effect
 from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.finding import ExactFinding, Finding, Findings
 from sher3_diagnosis.fit.tolerance import within
+from sher3_diagnosis.fit.whitened import Whitened
 from sher3_diagnosis.reporter import Reporter
 from sher3_diagnosis.verdict import Cause, Identified, Interval, Within
 
@@ -30,6 +31,22 @@ R = TypeVar("R")
 """A run as the machine reads it."""
 E = TypeVar("E", bound=Evidence)
 """The machine's own evidence: the engine's, with whatever its simulator needs."""
+
+
+class Rehearsal(NamedTuple):
+    """An experiment as a machine's model foresees it.
+
+    Attributes:
+        excitation: its name.
+        purpose: what is to be run, and why.
+        added: what the recorded runs had not, as a tracker or another temperature, in words; empty for none.
+        data: its runs without any cause: their residuals are nothing.
+    """
+
+    excitation: str
+    purpose: str
+    added: str
+    data: Whitened
 
 
 @dataclass(frozen=True)
@@ -117,6 +134,10 @@ class Machine(ABC, Generic[R, E]):
         Default none. Where there is any, no gap elsewhere does not make a verdict of no gap.
         """
         return {}
+
+    def rehearsals(self, evidence: E) -> Iterator[Rehearsal]:
+        """Yield experiments, the cheapest to make first, for what they would tell of causes; default none."""
+        yield from ()
 
     def end_to_end(self, findings: Sequence[Finding[E]], causes: Sequence[Cause]) -> Interval | None:
         """Return the closure of the machine run again in its simulator, at the end of its chain; default none."""

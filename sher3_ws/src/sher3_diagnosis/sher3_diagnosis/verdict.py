@@ -116,12 +116,18 @@ class Unexplained(_Model):
 
 
 class NextExperiment(_Model):
-    """The excitation that best tells the rivals apart."""
+    """The excitation that best tells the rivals apart.
+
+    `added` is what the recorded runs had not, in words. `expected_odds` is the probability after it of the
+    effect that is at work, on average over the rivals; None where it is not foretold.
+    """
 
     excitation: str
     purpose: str
     separates: list[str]
     predicted_separation: float | None
+    added: str = ""
+    expected_odds: float | None = Field(default=None, ge=0.0, le=1.0)
 
 
 class Answer(_Model):

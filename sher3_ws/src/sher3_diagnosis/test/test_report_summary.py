@@ -107,6 +107,9 @@ def test_commands_are_named_for_a_simulated_machine_only():
     open_one = verdict("under_excited", causes=[BACKLASH], next_experiment=TELLS)
     assert dict(five_lines(open_one, Reporter()))["next"] == "loads tells backlash / cogging apart"
     assert "`sher3 gap experiment" in dict(five_lines(open_one, OURS))["next"]
+    foretold = TELLS.model_copy(update={"added": "a tracker at the tip", "expected_odds": 0.97})
+    lines = dict(five_lines(open_one.model_copy(update={"next_experiment": foretold}), Reporter()))
+    assert lines["next"] == "loads, with a tracker at the tip, tells backlash / cogging apart; expected odds 97 %"
 
 
 @pytest.mark.parametrize(("odds", "tried"), [(0.3, True), (0.05, False)])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -15,7 +15,7 @@ from sher3_diagnosis.effect import Effect
 from sher3_diagnosis.finding import ExactFinding, Finding
 from sher3_diagnosis.flow import diagnose
 from sher3_diagnosis.judge.costs import DEFAULT, Costs
-from sher3_diagnosis.machine import Diagnosis, Machine
+from sher3_diagnosis.machine import Diagnosis, Machine, Rehearsal
 from sher3_diagnosis.verdict import Cause, Interval
 from sher3_effects import library
 
@@ -66,6 +66,12 @@ class Sher(Machine[RunSignals, SherEvidence]):
             gathered = partial(exact_evidence, runs, self.robot, finding.where.stage)
             out.append(replace(with_pages(finding, gathered, without), evidence=gathered))
         return out
+
+    def rehearsals(self, evidence: SherEvidence) -> Iterator[Rehearsal]:
+        """Yield the standard set as the nominal robot foresees it."""
+        from sher3_gap.experiments.foreseen import foreseen
+
+        yield from foreseen(evidence)
 
     def end_to_end(self, findings: Sequence[Finding[SherEvidence]], causes: Sequence[Cause]) -> Interval | None:
         """Return the closure of the tip in free runs of the simulator."""

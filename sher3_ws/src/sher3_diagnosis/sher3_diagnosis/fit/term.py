@@ -71,6 +71,13 @@ class Term:
             out[:, : x.shape[1]] = x
         return out
 
+    def with_runs(self, more: Term) -> Term:
+        """Return the term on its runs and on those of another evaluation."""
+        width = max(self.width, more.width)
+        return replace(
+            self, columns=self.columns + more.columns, fixed=self.fixed + more.fixed, width=width, products={}
+        )
+
 
 def make_term(data: Whitened, effect: Effect, site: str, shape: Shape) -> Term:
     """Evaluate an effect's signature on every run."""

@@ -30,6 +30,12 @@ class Whitened:
             {c: self.flat(r, c, x.values) for c, x in res.items() if x.ok.any()} for r, res in enumerate(self.residuals)
         ]
 
+    def with_runs(self, more: Whitened, target: Sequence[dict[Channel, Array]]) -> Whitened:
+        """Return these runs and others, of which something else than their residuals is looked at, (N,) over floors."""
+        out = Whitened([*self.views, *more.views], [*self.residuals, *more.residuals], [*self.floors, *more.floors])
+        out.target[len(self.target) :] = target
+        return out
+
     def flat(self, run: int, channel: Channel, values: Array) -> Array:
         """Whiten (g, d) or (g, d, p) values of a channel and flatten the samples that count -> (N,) or (N, p)."""
         residual = self.residuals[run][channel]

@@ -120,14 +120,14 @@ def _fit(finding: Finding, causes: Sequence[Judged], choice: Choice) -> Fit:
         return whole
     chosen = {j.item.index: (j, k) for j, k in zip(causes, choice, strict=True)}
     terms = [
-        _term(finding, *chosen[i]) if i in chosen else t
+        term_of(finding, *chosen[i]) if i in chosen else t
         for i, t in enumerate(whole.terms)
         if i not in chosen or chosen[i][1] != NONE
     ]
     return fit(finding.evidence.data, terms)
 
 
-def _term(finding: Finding, j: Judged, k: int) -> Term:
+def term_of(finding: Finding, j: Judged, k: int) -> Term:
     """Return the term of a candidate."""
     index, candidate = j.item.index, j.item.candidates[k]
     assert index is not None
@@ -144,7 +144,7 @@ def _cause(finding: Finding, j: Judged, k: int) -> Cause:
     found = finding.cause_of(j.item.index)
     if k == 0:
         return found.model_copy(update={"probability": j.effects[0]})
-    candidate, effect = j.item.candidates[k], _term(finding, j, k).effect
+    candidate, effect = j.item.candidates[k], term_of(finding, j, k).effect
     return Cause(
         effect=candidate.effect,
         family=candidate.family,

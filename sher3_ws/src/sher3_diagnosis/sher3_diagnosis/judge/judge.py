@@ -55,7 +55,7 @@ def judge(
     where = [f.where for f in exact] + [w for _, _, w in located]
     stage, residual = _first(findings, gaps, exact, where[0].gap)
     unexplained = _unexplained(findings, gaps, exact, calibration, costs)
-    proposals = [p for f in findings if (p := next_experiment(f.evidence, f.attribution)) is not None]
+    proposals = [p for f in findings if (p := next_experiment(machine, f)) is not None]
     return Verdict(
         status=_status(findings, exact, calibration, costs),
         where=where,

@@ -61,9 +61,14 @@ def judged(item: Item, calibration: Calibration, closure: Interval | None = None
     typicality = calibration.typicality(numbers)
     found = calibration.cause.probabilities(numbers, trust(typicality))
     far = np.array([c.unlikeness for c in item.candidates])
-    shares = np.exp(-calibration.sharpness * (far - far.min()))
-    effects = found[LIBRARY] * shares / shares.sum()
+    effects = found[LIBRARY] * shares_of(far, calibration)
     return Judged(item, tuple(effects.tolist()), found[OUTSIDE], found[NO_GAP], closure, typicality)
+
+
+def shares_of(unlikeness: Array, calibration: Calibration) -> Array:
+    """Return how candidates that are (k,) unlike the best share the probability of the library, (k,)."""
+    shares = np.exp(-calibration.sharpness * (unlikeness - unlikeness.min()))
+    return np.asarray(shares / shares.sum())
 
 
 def reproduced(stage: ExactFinding, calibration: Calibration) -> float:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 from sher3_diagnosis.reporter import Reporter
 from sher3_diagnosis.verdict import Verdict
-from sher3_diagnosis.words import words
+from sher3_diagnosis.words import share, words
 
 
 @dataclass(frozen=True)
@@ -18,7 +19,8 @@ class ExperimentCard:
         about: what that excitation is for; empty when the machine does not say.
         why: it separates these rivals.
         separates: their names.
-        separation: by how many floors they differ in these runs; empty when that was not computed.
+        separation: by how many floors they are expected to differ; empty when that was not foretold.
+        odds: expected of the effect that is at work; empty likewise.
     """
 
     title: str
@@ -26,6 +28,7 @@ class ExperimentCard:
     why: str
     separates: str
     separation: str
+    odds: str
 
 
 def experiment_card(verdict: Verdict, reporter: Reporter) -> ExperimentCard | None:
@@ -35,9 +38,10 @@ def experiment_card(verdict: Verdict, reporter: Reporter) -> ExperimentCard | No
         return None
     known = proposed.predicted_separation
     return ExperimentCard(
-        title=proposed.excitation,
+        title=f"{proposed.excitation} with {proposed.added}" if proposed.added else proposed.excitation,
         about=reporter.purpose(proposed.excitation),
         why=proposed.purpose,
         separates=" / ".join(words(e) for e in proposed.separates),
-        separation="" if known is None else f"{known:.2g}",
+        separation="" if known is None else f"{math.sqrt(known):.2g}",
+        odds="" if proposed.expected_odds is None else share(proposed.expected_odds),
     )

@@ -189,7 +189,9 @@ def command(verdict: Verdict, reporter: Reporter[Any], case: str, folder: str = 
 def _next(verdict: Verdict, reporter: Reporter[Any], case: str, folder: str) -> str:
     e = verdict.next_experiment
     if e is not None:
-        tells = f"{e.excitation} tells {' / '.join(words(i).lower() for i in e.separates)} apart"
+        added = f", with {e.added}," if e.added else ""
+        expected = "" if e.expected_odds is None else f"; expected odds {share(e.expected_odds)}"
+        tells = f"{e.excitation}{added} tells {' / '.join(words(i).lower() for i in e.separates)} apart{expected}"
         return f"`sher3 gap experiment {_file(case, folder)} {case}`: {tells}" if reporter.simulated else tells
     line = command(verdict, reporter, case, folder)
     return "none" if line is None else f"`{line[0]}` {line[1]}"

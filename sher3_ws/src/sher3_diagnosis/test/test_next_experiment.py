@@ -1,0 +1,72 @@
+"""Which experiment is proposed for rivals, and the odds that it promises."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pytest
+from sher3_diagnosis.flow import diagnose
+from sher3_diagnosis.machine import Rehearsal
+from toy import DIRECTION, Column, Toy, case, evidence_of, stroke
+
+WARMTH = Column("warmth", "drift", "warmth")
+"""Follows the warmth, which here goes with the direction."""
+
+
+def warmed(run, share):
+    """Return a run of which the warmth is the direction in a share of the samples, and nothing in the others."""
+    follows = np.where(np.arange(len(run.values)) < share * len(run.values), np.sign(run.velocity), 0.0)
+    return replace(run, warmth=follows)
+
+
+@dataclass(frozen=True)
+class Foreseeing(Toy):
+    """A toy that foresees more of the same, and then what is different."""
+
+    effects_known: tuple = (DIRECTION, WARMTH)
+    different: str = ""
+
+    def rehearsals(self, evidence):
+        empty = stroke(size=0.0)
+        quiet = replace(empty, values=np.zeros_like(empty.values))
+        yield Rehearsal("same", "more of the same", "", evidence_of([warmed(quiet, 1.0)]).data)
+        yield Rehearsal("apart", "no warmth", self.different, evidence_of([warmed(quiet, 0.0)] * 2).data)
+
+
+@pytest.fixture
+def alike():
+    return [warmed(run, 1.0) for run in case(5.0)]
+
+
+def test_an_experiment_in_which_the_rivals_differ_is_expected_to_settle_them(alike):
+    verdict = diagnose(Foreseeing(), alike).verdict
+    assert verdict.status == "under_excited"
+    assert verdict.causes[0].probability == pytest.approx(0.5, abs=0.02)
+    asked = verdict.next_experiment
+    assert (asked.excitation, asked.purpose, asked.added) == ("apart", "no warmth", "")
+    assert asked.expected_odds > 0.95
+    assert asked.predicted_separation > 1.0
+
+
+def test_what_the_recorded_runs_had_not_is_added_where_they_tell_nothing(alike):
+    assert diagnose(Foreseeing(different="a second sensor"), alike).verdict.next_experiment.added == "a second sensor"
+
+
+def test_more_of_the_same_promises_nothing(alike):
+    class Same(Foreseeing):
+        def rehearsals(self, evidence):
+            yield next(super().rehearsals(evidence))
+
+    verdict = diagnose(Same(), alike).verdict
+    assert verdict.next_experiment.expected_odds == pytest.approx(0.5, abs=0.02)
+    assert verdict.next_experiment.predicted_separation == pytest.approx(0.0, abs=1e-6)
+
+
+def test_the_odds_that_the_library_lacks_the_cause_stay_as_they_are(alike):
+    verdict = diagnose(Foreseeing(), alike).verdict
+    library = sum(a.probability for a in verdict.places[0].answers if a.causes)
+    assert verdict.next_experiment.expected_odds <= library
+
+
+def test_a_machine_that_foresees_nothing_names_what_shows_the_rival(alike):
+    asked = diagnose(Toy((DIRECTION, WARMTH)), alike).verdict.next_experiment
+    assert (asked.excitation, asked.expected_odds) == ("steps", None)

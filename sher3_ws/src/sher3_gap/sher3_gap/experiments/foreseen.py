@@ -1,0 +1,62 @@
+"""The standard set as the nominal robot foresees it: what its runs would be like, before any is recorded."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from sher3_description.contract import REFERENCE_TEMPERATURE
+from sher3_diagnosis.channel import AT_TIP, Floors
+from sher3_diagnosis.fit.whitened import Whitened
+from sher3_diagnosis.machine import Rehearsal
+
+from sher3_gap.case.loading import signals_of
+from sher3_gap.evidence import SherEvidence, gather
+from sher3_gap.excitation import catalogue, excite
+from sher3_gap.experiments.rehearsal import rehearse
+from sher3_gap.experiments.separation import floors_of
+
+APART = ("p1", "p2")
+"""Postures of an experiment: the two opposite ones."""
+REPEATS = 2
+WHY = f"what the rivals foretell differs most here; twice in each of the postures {' and '.join(APART)}"
+WARMER = 5.0
+"""Degrees by which a robot is warmed for an experiment, K: an hour of work in a warm room."""
+TRACKED, WARMED = "a tracker at the tip", f"the robot {WARMER:g} K warmer"
+
+
+def foreseen(evidence: SherEvidence) -> Iterator[Rehearsal]:
+    """Yield each excitation of the standard set, twice in each of two postures, with the floors of a case.
+
+    First as the case was recorded; then with the tip tracked, where it was not; then with the robot warmed. Known loads
+    only where the case has some: whoever has none cannot put any on.
+    """
+    floor = floors_of(evidence)
+    loads = any(run.payload for run in evidence.runs)
+    names = [n for n in catalogue() if n != "task" and (loads or n != "loads")]
+    usual = temperature_of(evidence)
+    ways = {"": usual} | ({} if _tracked(floor) else {TRACKED: usual}) | {WARMED: usual + WARMER}
+    for added, temperature in ways.items():
+        for name in names:
+            yield Rehearsal(name, WHY, added, _runs(name, evidence, floor, temperature, added == TRACKED))
+
+
+def temperature_of(evidence: SherEvidence) -> float:
+    """Return the mean temperature of a case, deg C; the reference where it was not recorded."""
+    known = [run.temperature.mean() for run in evidence.runs if run.temperature is not None]
+    return float(np.mean(known)) if known else REFERENCE_TEMPERATURE
+
+
+def _tracked(floor: Floors) -> bool:
+    return any(c.stage in AT_TIP for c in floor)
+
+
+def _runs(name: str, evidence: SherEvidence, floor: Floors, temperature: float, tracked: bool) -> Whitened:
+    """Return the runs of an experiment without any cause; those of a new sensor have the floor of the nominal robot."""
+    asked = [(excite(name, evidence.robot, posture=p), 0) for p in APART]
+    made = rehearse(evidence.robot, asked, scatter=None, temperature=temperature)
+    runs = [signals_of(run, evidence.robot, f"{name} {i}") for i, run in enumerate(made)]
+    seen = gather(runs, evidence.robot)
+    known = floors_of(seen) | floor if tracked else floor
+    told = [{c: x for c, x in residuals.items() if c in known} for residuals in seen.data.residuals]
+    return Whitened(seen.views * REPEATS, told * REPEATS, [known] * len(runs) * REPEATS)

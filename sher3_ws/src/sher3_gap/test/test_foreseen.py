@@ -1,0 +1,44 @@
+"""Experiments as the nominal robot foresees them, and doubts that only a tracker or warmth settles."""
+
+from dataclasses import replace
+
+import pytest
+from sher3_diagnosis.channel import AT_TIP
+from sher3_effects import plants
+from sher3_gap import diagnose_runs
+from sher3_gap.evidence import gather
+from sher3_gap.experiments.foreseen import TRACKED, WARMED, foreseen
+from simulated import ROBOT, runs_of, signals
+
+
+def untracked(runs):
+    """Return runs as if nothing had tracked the tip."""
+    return [replace(run, tracker_position=None, tracker_rotation=None, tracker_index=None) for run in signals(runs)]
+
+
+@pytest.fixture(scope="module")
+def short_strokes():
+    return untracked(runs_of(["reversals_0.15", "steps_0.2"], [plants()["lead_error"]("delta_2", relative=1e-2)]))
+
+
+def test_known_loads_and_a_tracker_are_foreseen_where_the_case_has_some_and_where_it_has_none():
+    tracked = list(foreseen(gather(signals(runs_of(["loads"], repeats=2)), ROBOT)))
+    assert {x.added for x in tracked} == {"", WARMED}
+    assert {"loads", "postures"} <= {x.excitation for x in tracked}
+    bare = list(foreseen(gather(untracked(runs_of(["steps"], repeats=2)), ROBOT)))
+    assert list(dict.fromkeys(x.added for x in bare)) == ["", TRACKED, WARMED]
+    assert "loads" not in {x.excitation for x in bare}
+    assert {x.added for x in bare if any(c.stage in AT_TIP for run in x.data.target for c in run)} == {TRACKED}
+
+
+def test_a_robot_without_a_cause_is_foreseen_at_its_floor():
+    seen = next(foreseen(gather(signals(runs_of(["steps"], repeats=2)), ROBOT)))
+    loss = sum(seen.data.null_loss.values()) / sum(seen.data.samples.values())
+    assert loss < 1.0
+
+
+def test_a_tracker_is_asked_for_where_a_lead_and_an_encoder_scale_give_the_same(short_strokes):
+    asked = diagnose_runs(short_strokes, ROBOT).verdict.next_experiment
+    assert asked is not None and {"lead_error", "encoder_scale"} <= set(asked.separates)
+    assert asked.added == TRACKED
+    assert asked.expected_odds > 0.9
