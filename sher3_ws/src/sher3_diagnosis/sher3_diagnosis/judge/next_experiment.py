@@ -113,10 +113,12 @@ def prospect(finding: Finding, judged: Judged, more: Whitened) -> Prospect:
 
 def foretold(found: Fit, added: Sequence[Term], more: Whitened) -> list[dict[Channel, Array]]:
     """Return what the terms of a fit add to further runs, per run and channel (N,), over the floor."""
-    return [
-        {c: sum((t.adds(r, c, found.of(i)) for i, t in enumerate(added)), np.zeros(len(y))) for c, y in seen.items()}
-        for r, seen in enumerate(more.target)
-    ]
+    out = [{c: np.zeros(len(y)) for c, y in seen.items()} for seen in more.target]
+    for i, term in enumerate(added):
+        for r, total in enumerate(out):
+            for c in total:
+                total[c] = total[c] + term.adds(r, c, found.of(i))
+    return out
 
 
 def _is(finding: Finding, j: Judged, term: Term) -> bool:
