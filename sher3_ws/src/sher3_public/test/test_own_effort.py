@@ -29,6 +29,11 @@ def test_efforts_alone_of_a_healthy_simulator_are_no_gap(method):
     assert found.status == "no_gap" and "simulator's own" in " ".join(found.guessed)
 
 
+def test_efforts_alone_of_a_servo_whose_speed_settles_within_a_few_steps():
+    xml = drawn_xml(np.random.default_rng(716))
+    assert "RK4" in xml and diagnosed(xml, logged(xml, 716)).status == "no_gap"
+
+
 def test_a_place_and_a_speed_within_the_step_of_runge_and_kutta():
     """Without the half step of the control the law is off by kp * dt / 2 * d(ctrl)/dt: 0.8 N m at 2 rad/s."""
     xml = arm("RK4")

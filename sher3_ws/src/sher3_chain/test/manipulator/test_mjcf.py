@@ -31,13 +31,51 @@ def test_a_position_actuator_is_a_servo_at_its_joint():
     assert found.of_law == pytest.approx(Step(0.001 * (20.0 + 0.5)))
 
 
-def test_runge_and_kutta_hold_the_control_alone():
-    xml = XML.format('<position joint="a" kp="100" kv="5" gear="2"/>').replace("implicitfast", "RK4")
-    found = driven(mujoco.MjModel.from_xml_string(xml))["a"]
+@pytest.mark.parametrize(("step", "gain"), [(0.0002, 5.0), (0.002, 15.0)])
+def test_runge_and_kutta_hold_the_control_alone(step, gain):
+    """A servo told to follow a line, or a parabola, step by step: by what its force at their beginning is larger.
+
+    Short steps: half a step of damping as inertia, of stiffness as damping. Long ones: as MuJoCo itself does it, with a
+    control of every step that puts the place on the course.
+    """
+    xml = XML.format(f'<position joint="a" kp="100" kv="{gain}" gear="2"/>').replace("implicitfast", "RK4")
+    model = mujoco.MjModel.from_xml_string(
+        xml.replace("0.002", str(step)).replace("<option", '<option gravity="0 0 0"')
+    )
+    found = driven(model)["a"]
     inertia = 2.0 * 0.2**2 + 0.4 * 2.0 * 0.1**2  # kg m^2, of a ball at a distance
-    kinks = 0.002 * 20.0 / (3.0 * inertia)
-    assert found.recorded == pytest.approx(Step(0.001 * 20.0, 0.001 * 400.0 * (1.0 + kinks), 0.001))
-    assert found.of_law == pytest.approx(Step(late=0.001))
+    for speed, bend in ((1.0, 0.0), (0.0, 2.0)):
+        late = 0.5 * step * bend  # its force acts half a step later, at this much more speed
+        wanted = (inertia + found.recorded.inertia) * bend + (0.5 + found.recorded.damping) * (speed + late)
+        assert force_on_course(model, speed, bend) == pytest.approx(wanted, rel=1e-4)
+    first = Step(2.0 * step * gain, 200.0 * step * (1.0 + step * 4.0 * gain / (3.0 * inertia)), 0.5 * step)
+    assert found.recorded == pytest.approx(first, rel=20.0 * step * gain)
+    assert found.of_law == pytest.approx(Step(late=0.5 * step))
+
+
+def force_on_course(model, speed, bend):
+    """Return the force at place zero, N m, of a joint whose every step ends on a course of a speed and an acceleration.
+
+    After some steps what it began with is forgotten: speeds at the beginning of steps grow by the same from one to the
+    next, and the force at the beginning grows with them.
+    """
+    data, h, forces = mujoco.MjData(model), model.opt.timestep, []
+    steps = 400
+    times = h * (np.arange(steps + 1) - steps + 1)
+    course = speed * times + 0.5 * bend * times**2
+    data.qpos[0], data.qvel[0] = course[0], speed + bend * times[0]
+    for place in course[1:]:
+        ends = []
+        for control in (0.0, 1.0):
+            trial = mujoco.MjData(model)
+            trial.qpos[:], trial.qvel[:], trial.ctrl[:] = data.qpos, data.qvel, control
+            mujoco.mj_step(model, trial)
+            ends.append(trial.qpos[0])
+        data.ctrl[0] = (place - ends[0]) / (ends[1] - ends[0])
+        mujoco.mj_forward(model, data)
+        forces.append(2.0 * data.actuator_force[0])
+        mujoco.mj_step(model, data)
+    return forces[-1]
 
 
 def test_a_motor_is_a_force():

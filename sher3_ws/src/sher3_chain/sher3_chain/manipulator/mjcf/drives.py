@@ -5,6 +5,7 @@ An actuator gives gain * control + bias (chapter Computation of MuJoCo's documen
 
 from __future__ import annotations
 
+import math
 from collections import defaultdict
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -114,8 +115,7 @@ def _driven(source: Any, joint: int) -> Driven:
     """Reckon what a step adds: its speed lies half a step before central differences, an implicit one behind.
 
     The method of Runge and Kutta follows place and speed within a step and holds the control, so what was recorded at
-    its beginning is half a step early, and all but the control was not. Each change of the control kinks the speed: its
-    mean lies a sixth of a step times the change of acceleration above the one that was recorded.
+    its beginning is half a step early, and all but the control was not (`_followed`).
     """
     half, method = 0.5 * float(source.opt.timestep), source.opt.integrator
     damping = float(source.dof_damping[source.jnt_dofadr[joint]])
@@ -125,12 +125,39 @@ def _driven(source: Any, joint: int) -> Driven:
     if method in (IMPLICIT, IMPLICIT_FAST):
         recorded, of_law = Step(half * (damping + 2.0 * gain)), Step(half * (damping + gain))
     elif method == RUNGE_KUTTA:
-        kinks = half * gain / (1.5 * float(source.dof_M0[source.jnt_dofadr[joint]]))
-        recorded, of_law = Step(half * gain, half * stiffness * (1.0 + kinks), half), Step(late=half)
+        mass = float(source.dof_M0[source.jnt_dofadr[joint]])
+        recorded, of_law = _followed(mass, damping, stiffness, gain, 2.0 * half), Step(late=half)
     elif method == EULER:
         own = half * damping * (-1.0 if source.opt.disableflags & EULER_DAMP else 1.0)
         recorded, of_law = Step(own), Step(own - half * gain)
     return Driven(source.jnt_type[joint] == SLIDE, recorded, of_law, damping, drive, reason)
+
+
+def _followed(mass: float, damping: float, stiffness: float, gain: float, step: float) -> Step:
+    """Return by what the force of a servo at the beginning of a step of Runge and Kutta differs from its mean.
+
+    The joint by itself is a linear system, which the method takes from step to step by the first terms of its
+    exponential; each step has a control of its own, chosen so that the places of all steps lie on a line, or on a
+    parabola. Speeds at their beginning, which repeat from step to step, and the force there then follow.
+    """
+    if not stiffness:
+        return Step(0.5 * step * gain, 0.0, 0.5 * step)
+    rates = step * np.array([[0.0, 1.0], [-stiffness / mass, -(gain + damping) / mass]])
+    terms = [np.linalg.matrix_power(rates, n) / math.factorial(n) for n in range(5)]
+    (qq, qv), (vq, vv) = np.sum(terms, axis=0)
+    by_control = (1.0 - qq, -vq)  # what is at rest where it was told to be stays there
+    pull = by_control[1] / by_control[0]
+    keeps = 1.0 - (vv - pull * qv)
+
+    def force(place: float, speed: float) -> float:
+        """At place zero, with a speed, where the next place is known."""
+        return stiffness * (place - qv * speed) / by_control[0] - gain * speed
+
+    on_line = force(step, pull * step / keeps)
+    grows = pull * step**2 / keeps
+    on_parabola = force(0.5 * step**2, (0.5 * pull * step**2 - grows) / keeps)
+    more = on_line - damping
+    return Step(on_parabola - mass - 0.5 * step * on_line, more, 0.5 * step)
 
 
 def _held(source: Any, joint: int) -> tuple[float, float]:
