@@ -69,11 +69,11 @@ def without_sync(run: MatrixRun) -> None:
     goes(run, 9e-4, "tilt")
 
 
-def explained(speed: float) -> Callable[[MatrixRun], None]:
-    """Return an attack of a leg that goes and reports the force that would explain it."""
+def explained(speed: float, name: str = LEGS[0]) -> Callable[[MatrixRun], None]:
+    """Return an attack of an axis that goes and reports the force that would explain it."""
 
     def attack(run: MatrixRun) -> None:
-        drive, went = run.rig.plant.drives.drives[LEGS[0]], [0.0]
+        drive, went = run.rig.plant.drives.drives[name], [0.0]
 
         def stray(velocity: float) -> float:
             went[0] += speed * PERIOD
@@ -144,11 +144,14 @@ BY_TURNS = unheard(lambda tick, node, can_id, channel: (tick + node) % 3 != 0, 2
 ONE_LOST = unheard(lambda tick, node, can_id, channel: node == 1 and tick % 2 == 1, 2e-3, LEGS[0])
 NINE_LOST = unheard(lambda tick, node, can_id, channel: tick % 10 != 9, 9e-3, "tilt")
 SPEEDS = (1e-4, 4.5e-4, 5.5e-4, 1e-3, 2e-3)
+TILTS, ROLLS = (2e-4, 4.5e-4, 9e-4), (0.015, 0.03)
 CASES = (
     Case("delta_1 at 2 mm/s, every other report of it lost", ONE_LOST, IDLE),
     Case("legs at 2 mm/s, each drive heard in one tick of three", BY_TURNS, IDLE),
     Case("tilt at 0.9 mm/s, channel 1 hears no SYNC", without_sync, IDLE),
     *(Case(f"delta_1 at {v * 1e3:g} mm/s with the force that explains it", explained(v), IDLE) for v in SPEEDS),
+    *(Case(f"tilt at {v * 1e3:g} mm/s with the force that explains it", explained(v, "tilt"), IDLE) for v in TILTS),
+    *(Case(f"roll at {v:g} rad/s with the torque that explains it", explained(v, "roll"), IDLE) for v in ROLLS),
     *(
         Case(f"commands and both positions of delta_1 times {k:g}", all_alike(k), state)
         for k in (1.02, 1.1, -1.0)

@@ -248,10 +248,11 @@ def test_a_leg_that_leaves_its_command_is_judged_coarsely(strays, force, objects
     assert drive_legs(HandDetector(KINEMATICS, CONTROL), 500, 0.0, force, strays) is objects
 
 
-def test_a_drive_that_holds_what_nobody_feels_loses_its_power(detector):
-    """A sensor that feels what no drive holds is no reason for that."""
+@pytest.mark.parametrize("along", [UP, ABOUT_ROLL])
+def test_a_drive_that_holds_what_nobody_feels_loses_its_power(detector, along):
+    """A force or a torque; a sensor that feels what no drive holds is no reason for that."""
     _, stamp = feel(detector, 1.0, 0.0, 0.0)
-    assert feel(detector, 0.1, 0.0, 2.0, stamp)[0] is not None
+    assert feel(detector, 0.1, 0.0, 2.0, stamp, along)[0] is not None
     assert detector.check(0).action is Action.POWER_OFF
     detector.begin()
     _, stamp = feel(detector, 1.0, 0.0, 0.0, stamp + 10**9)

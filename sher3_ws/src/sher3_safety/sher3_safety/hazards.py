@@ -83,9 +83,9 @@ HAZARDS = (
         ("*.power", "*.demand", "*.echo", "*.motor", "*.statusword"),
         (f"{_DRIVERS}/test_position.py", f"{_DRIVERS}/test_speed_limits.py"),
         ("axis leaves its commands", RUNAWAY),
-        "a drive that creeps and reports the force that would explain it: 115 um near tissue (`python "
-        "bench/attacks.py`), until the watch of the hand, which hears the force sensor, takes its power; "
-        "one that neither hears nor is heard: 98 and 712 um (`sher3 safety budget`); one that turns its motor "
+        "a drive that creeps and reports the force that would explain it: a leg 115 um near tissue, the tilt 184 um at "
+        "its limit (`python bench/attacks.py`), until the watch of the hand, which hears the force sensor, takes its "
+        "power; one that neither hears nor is heard: 98 and 712 um (`sher3 safety budget`); one that turns its motor "
         "without being enabled: only safe torque off stops it",
     ),
     Hazard(

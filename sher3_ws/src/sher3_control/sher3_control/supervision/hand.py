@@ -114,7 +114,7 @@ class HandDetector(PlainDetector):
         self._since, self._astray, self._begun, self._settled, self._blind = -1, -1, False, False, 0.0
         self._quick, self._slow = np.zeros((len(self._lags) - 1, AXES)), np.zeros(AXES)
         self._sum = np.zeros(AXES)
-        self._rough = np.zeros(AXES)
+        self._rough, self._held_more = np.zeros(AXES), np.zeros(2, dtype=bool)
         self._way.begin()
         self._both, self._hand, self._alone = np.zeros((len(self._lags), 2)), np.zeros(AXES), NOWHERE
         self._found = self._worst = self._nothing
@@ -244,16 +244,16 @@ class HandDetector(PlainDetector):
             self._found = self._found._replace(value=value, limit=limit, unit=unit, harder=Action.NONE)
 
     def _accuse(self, total: Array, felt: Array) -> None:
-        """Note how hard to stop: where the drives hold more than the sensor feels, they may go by themselves."""
-        held = sizes(total - felt)[0] > sizes(felt)[0]
-        self._found = self._found._replace(harder=Action.POWER_OFF if held else Action.NONE)
+        """Note where the drives hold more than the sensor feels, force or torque: there they may go by themselves."""
+        self._held_more = sizes(total - felt) > sizes(felt)
 
     def _tell(self, doubts: Array, limits: Array) -> None:
         """Report the doubt (n, 2) that is nearest its limit: a force, or a torque back from its arm."""
         row, torque = np.unravel_index(np.argmax(doubts / limits), doubts.shape)
         value, limit = float(doubts[row, torque]), float(limits[row, torque])
         arm, unit = (self._settings.hand_arm, "N m") if torque else (1.0, "N")
-        self._found = self._found._replace(value=value * arm, limit=limit * arm, unit=unit)
+        harder = Action.POWER_OFF if self._held_more[torque] else Action.NONE
+        self._found = self._found._replace(value=value * arm, limit=limit * arm, unit=unit, harder=harder)
 
     def _keep(self) -> None:
         """Keep what was furthest beyond its limit since the last check: a supervisor looks at several ticks at once."""
