@@ -48,7 +48,7 @@ def run_arms(
     """
     unknown = [kind for kind in kinds if kind not in (*ORDER, CABLE)]
     if unknown:
-        raise ArmsError("no such kind of fault", value=unknown[0], limit=", ".join(dict.fromkeys((*ORDER, CABLE))))
+        raise ArmsError.unknown("no such kind of fault", unknown[0], dict.fromkeys((*ORDER, CABLE)))
     if beside:
         tools()
     if folder.exists():

@@ -63,10 +63,15 @@ def requests(
     """
     first, last = seeds
     if not 0 < last - first <= MAXIMUM_CASES:
-        raise ChallengeError("number of cases out of range", value=last - first, limit=f"1 to {MAXIMUM_CASES}")
+        raise ChallengeError(
+            "number of cases out of range",
+            value=last - first,
+            limit=f"1 to {MAXIMUM_CASES}",
+            remedy="give another range of seeds",
+        )
     unknown = [kind for kind in kinds if kind not in (*KINDS, WITHHELD)]
     if unknown:
-        raise ChallengeError("no such kind of case", value=unknown[0], limit=", ".join((*KINDS, WITHHELD)))
+        raise ChallengeError.unknown("no such kind of case", unknown[0], (*KINDS, WITHHELD))
     dealt = [truth_plant(name) for name in plants] if plants else truth_plants(say)
     made = []
     for n, seed in enumerate(range(first, last)):
@@ -75,7 +80,7 @@ def requests(
         if without is not None:
             names = [name for name, known in truth.library.items() if known.effect == without]
             if not names:
-                raise ChallengeError("no such effect", value=without, limit=", ".join(truth.effects))
+                raise ChallengeError.unknown("no such effect", without, truth.effects)
             made.append(Request(seed, "single", names[turn % len(names)], True, gap, truth.name))
         elif kind == WITHHELD:
             made.append(Request(seed, "single", None, True, gap, truth.name))

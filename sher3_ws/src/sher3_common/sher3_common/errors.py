@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Iterable
+from difflib import get_close_matches
+from typing import Any, TypeVar
+
+E = TypeVar("E", bound="Sher3Error")
 
 
 class Sher3Error(ValueError):
@@ -23,6 +27,21 @@ class Sher3Error(ValueError):
         self.value = value
         self.limit = limit
         self.remedy = remedy
+
+    @classmethod
+    def unknown(cls: type[E], what: str, name: object, known: Iterable[str], **details: Any) -> E:
+        """Return the error of a name that is none of those known; the remedy is the nearest of them, if one is near.
+
+        Args:
+            what: what is wrong.
+            name: that was given.
+            known: names that there are.
+            details: whatever else the type takes.
+        """
+        names = [str(x) for x in known]
+        near = get_close_matches(str(name), names, 1)
+        remedy = f"did you mean {near[0]}?" if near else "name one of them"
+        return cls(what, value=name, limit=", ".join(names), remedy=remedy, **details)
 
     def __str__(self) -> str:
         parts = [self.what]

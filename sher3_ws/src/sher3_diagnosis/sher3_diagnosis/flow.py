@@ -113,6 +113,4 @@ def check_known(machine: Machine, ids: Collection[str]) -> None:
     known = sorted({e.id for e in machine.library()})
     unknown = sorted(set(ids) - set(known))
     if unknown:
-        raise UnknownEffect(
-            "no such effect", value=", ".join(unknown), limit=", ".join(known), remedy="name one of them"
-        )
+        raise UnknownEffect.unknown("no such effect", ", ".join(unknown), known)

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Mapping
-from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
@@ -29,18 +28,21 @@ def effect_from_dict(data: Mapping[str, Any]) -> PlantEffect:
     """
     unknown = set(data) - {"effect", "actuator", "parameters"}
     if unknown or "effect" not in data or "actuator" not in data:
-        raise EffectError("an effect has the keys effect, actuator and parameters", value=", ".join(map(str, data)))
+        raise EffectError(
+            "an effect has the keys effect, actuator and parameters",
+            value=", ".join(map(str, data)),
+            remedy="give these keys and no others",
+        )
     known = plants()
     if not isinstance(data["effect"], str) or data["effect"] not in known:
-        near = "; ".join(f"did you mean {name}?" for name in get_close_matches(str(data["effect"]), known, 1))
-        raise EffectError("no such effect", value=data["effect"], remedy=near or f"use one of {', '.join(known)}")
+        raise EffectError.unknown("no such effect", data["effect"], known)
     kind, given = known[data["effect"]], data.get("parameters") or {}
     if not isinstance(given, Mapping):
-        raise EffectError(f"{kind.id}: parameters are not a mapping", value=given)
+        raise EffectError(f"{kind.id}: parameters are not a mapping", value=given, remedy="write them as {name: value}")
     names = kind.specification(str(data["actuator"]))
     for name in given:
         if name not in names:
-            raise EffectError(f"{kind.id} has no such parameter", value=name, limit=", ".join(names))
+            raise EffectError.unknown(f"{kind.id} has no such parameter", name, names)
     return kind(str(data["actuator"]), **given)
 
 
@@ -62,11 +64,13 @@ def load_effects(path: Path | str) -> list[PlantEffect]:
         raise FileError("is not an effects file", path=path, value=schema, limit=SCHEMA, remedy="set schema")
     pages = data.get("library", [])
     if not isinstance(pages, list) or not all(isinstance(p, str) for p in pages):
-        raise FileError("library is not a list of paths", path=path)
+        raise FileError("library is not a list of paths", path=path, remedy="write it as [found.yaml]")
     add_library([Path(path).parent / p for p in pages])
     entries = data.get("effects")
     if not isinstance(entries, list) or not all(isinstance(entry, Mapping) for entry in entries):
-        raise FileError("effects is not a list of mappings", path=path)
+        raise FileError(
+            "effects is not a list of mappings", path=path, remedy="write each as {effect, actuator, parameters}"
+        )
     return [effect_from_dict(entry) for entry in entries]
 
 

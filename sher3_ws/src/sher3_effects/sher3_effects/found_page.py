@@ -151,12 +151,17 @@ def _page(data: Mapping[str, Any], path: Path) -> FoundPage:
         raise Sher3Error("a formula has no term, or a coefficient that is not finite", remedy="correct the terms")
     own = [site in SITES for site in sites]
     if not sites or any(own) != all(own):
-        raise Sher3Error("sites of one machine are needed", value=", ".join(sites), limit=", ".join(SITES))
+        raise Sher3Error(
+            "sites of one machine are needed",
+            value=", ".join(sites),
+            limit=", ".join(SITES),
+            remedy="name places of the SHER, or axes of another machine, not both",
+        )
     place = sites[0] if own[0] and sites[0] not in ACTUATORS else "axis"
     most = 0 if place == "axis" else 5
     for t in terms:
         if not 0 <= t.component <= most:
-            raise Sher3Error("no such component", value=t.component, limit=most)
+            raise Sher3Error("no such component", value=t.component, limit=most, remedy="count components from 0")
     attributes = {
         "id": str(data["effect"]),
         "stage": stage,
@@ -191,7 +196,7 @@ def _is_dry(feature: Feature) -> bool:
 
 def _known(value: object, limit: Sequence[str], what: str) -> None:
     if value not in limit:
-        raise Sher3Error(f"no such {what}", value=value, limit=", ".join(limit))
+        raise Sher3Error.unknown(f"no such {what}", value, limit)
 
 
 def _inputs(terms: Sequence[SavedTerm]) -> tuple[str, ...]:

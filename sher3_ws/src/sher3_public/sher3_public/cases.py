@@ -86,7 +86,7 @@ def _case(data: dict[str, Any], tables: Sequence[Tables], source: Source | None,
     data = {**data, **({"conditions": conditions} if conditions else {})}
     kind = kinds().get(str(data.get("kind")))
     if kind is None:
-        raise InputError("no such kind of machine", value=data.get("kind"), limit=", ".join(kinds()))
+        raise InputError.unknown("no such kind of machine", data.get("kind"), kinds())
     try:
         description = kind.description.model_validate(data)
     except ValidationError as error:

@@ -154,8 +154,15 @@ def per_run(
     if isinstance(tags, Mapping):
         for tag, values in tags.items():
             if isinstance(values, str) or len(values) != runs:
-                raise InputError(f"tag {tag} has not one value for each run", value=values, limit=f"{runs} runs")
+                raise InputError(
+                    f"tag {tag} has not one value for each run",
+                    value=values,
+                    limit=f"{runs} runs",
+                    remedy="give a value for each run",
+                )
         return [{tag: values[i] for tag, values in tags.items()} for i in range(runs)]
     if len(tags) != runs:
-        raise InputError("tags are not as many as runs", value=len(tags), limit=f"{runs} runs")
+        raise InputError(
+            "tags are not as many as runs", value=len(tags), limit=f"{runs} runs", remedy="give a value for each run"
+        )
     return [dict(x) for x in tags]

@@ -139,7 +139,7 @@ def draw_plan(
     drawn = str(rng.choice(KINDS, p=MIX))
     kind = kind or drawn
     if kind not in KINDS:
-        raise ChallengeError("no such kind of case", value=kind, limit=", ".join(KINDS))
+        raise ChallengeError.unknown("no such kind of case", kind, KINDS)
     recipe = RECIPES[int(rng.integers(len(RECIPES)))] if kind == "under_excited" else None
     kinds = _draw_kinds(truth, kind, effect, recipe, rng)
     faults = tuple(_draw_fault(k, rng) for k in kinds)
@@ -180,7 +180,7 @@ def _draw_kinds(
     pool = truth.outside if kind == "outside" else truth.library
     if effect is not None:
         if effect not in pool:
-            raise ChallengeError(f"no such {kind} fault", value=effect, limit=", ".join(pool))
+            raise ChallengeError.unknown(f"no such {kind} fault", effect, pool)
         return [pool[effect]]
     names = sorted(pool)
     if kind != "compound":

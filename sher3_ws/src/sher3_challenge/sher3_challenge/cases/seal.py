@@ -29,4 +29,9 @@ def check_seal(folder: Path) -> None:
     now = hashes(folder / CASES) | hashes(folder / LABELS, LABELS)
     changed = sorted(key for key in now.keys() | manifest.keys() if now.get(key) != manifest.get(key))
     if changed:
-        raise ChallengeError("cases or labels changed after sealing", value=", ".join(changed[:3]), limit=len(changed))
+        raise ChallengeError(
+            "cases or labels changed after sealing",
+            value=", ".join(changed[:3]),
+            limit=len(changed),
+            remedy="run the challenge again in a new folder",
+        )

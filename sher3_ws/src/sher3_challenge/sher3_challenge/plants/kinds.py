@@ -68,7 +68,12 @@ class Fault:
         """Write the fault into a rig; return its parameters. Raises FaultError where its actuator cannot have it."""
         if self.actuator not in self.kind.places:
             limit = ", ".join(self.kind.places)
-            raise FaultError(f"{self.kind.name} cannot sit there", value=self.actuator, limit=limit)
+            raise FaultError(
+                f"{self.kind.name} cannot sit there",
+                value=self.actuator,
+                limit=limit,
+                remedy="choose one of these places",
+            )
         return self.kind.apply(rig, Site(self.actuator, np.random.default_rng(self.seed)), self.magnitude)
 
     def scaled_by(self, factor: float) -> Fault:

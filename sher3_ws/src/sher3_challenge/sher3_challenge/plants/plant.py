@@ -145,4 +145,4 @@ class TruthPlant:
         for catalogue in (self.library, self.outside):
             if name in catalogue:
                 return catalogue[name]
-        raise ChallengeError("no such fault", value=name, limit=", ".join([*self.library, *self.outside]))
+        raise ChallengeError.unknown("no such fault", name, [*self.library, *self.outside])

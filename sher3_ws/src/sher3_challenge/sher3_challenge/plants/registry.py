@@ -37,7 +37,7 @@ def truth_plant(name: str) -> TruthPlant:
         ChallengeError: there is none, or a library it needs is not installed.
     """
     if name not in plant_names():
-        raise ChallengeError("no such plant", value=name, limit=", ".join(plant_names()))
+        raise ChallengeError.unknown("no such plant", name, plant_names())
     try:
         module = importlib.import_module(f"{room.__name__}.{name}.truth")
     except ModuleNotFoundError as error:

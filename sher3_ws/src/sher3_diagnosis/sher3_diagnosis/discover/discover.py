@@ -60,7 +60,11 @@ def discover(diagnosis: Findings, channel: Channel | None = None, say: Say = sil
     if channel not in finding.significant:
         return Discovery([channel], note=f"nothing to discover: {channel} is at its floor")
     if not all(isinstance(v, Recorded) for v in finding.evidence.views):
-        raise FormulaError("this kind of machine does not tell what a law could depend on", value=str(channel))
+        raise FormulaError(
+            "this kind of machine does not tell what a law could depend on",
+            value=str(channel),
+            remedy="a formula is found on axes, servos, arms in motion and the SHER",
+        )
     return discover_at(finding.evidence, channel, say)
 
 

@@ -57,8 +57,7 @@ class Factor:
     def along(self, quantities: Quantities, period: float) -> Array:
         """Return the factor along a run whose samples are `period` apart, (n,); raises FormulaError."""
         if self.quantity not in quantities:
-            known = ", ".join(sorted(quantities))
-            raise FormulaError("no such quantity here", value=self.quantity, limit=known, remedy="name one of them")
+            raise FormulaError.unknown("no such quantity here", self.quantity, sorted(quantities))
         a, b = (*self.shape, 0.0, 0.0)[:2]
         return walk(LAWS[self.law].code, a, b, np.ascontiguousarray(quantities[self.quantity].values), period)
 
@@ -121,7 +120,7 @@ def parse(text: str) -> Feature:
         raise FormulaError("is no product of laws", value=text, remedy="as in square(velocity)") from error
     factors = tuple(_factor(node, text) for node in _product(tree) if not _is_one(node))
     if len(factors) > MOST_FACTORS:
-        raise FormulaError("too many factors", value=len(factors), limit=MOST_FACTORS)
+        raise FormulaError("too many factors", value=len(factors), limit=MOST_FACTORS, remedy="write fewer factors")
     return Feature(factors)
 
 
@@ -140,15 +139,21 @@ def _factor(node: ast.expr, text: str) -> Factor:
         raise FormulaError("is no product of laws", value=text, remedy="as in square(velocity)")
     law, (quantity, *shape) = node.func.id, node.args
     if law not in LAWS:
-        raise FormulaError("no such law", value=law, limit=", ".join(LAWS))
+        raise FormulaError.unknown("no such law", law, LAWS)
     try:
         numbers = tuple(float(ast.literal_eval(s)) for s in shape)
     except (ValueError, TypeError) as error:
-        raise FormulaError("a shape parameter is no number", value=text) from error
+        raise FormulaError(
+            "a shape parameter is no number",
+            value=text,
+            remedy="write numbers behind the quantity, as in sliding(position, 5e-06)",
+        ) from error
     wanted = LAWS[law].shapes
     if len(numbers) != len(wanted) or not all(map(np.isfinite, numbers)):
         limit = ", ".join(wanted) or "none"
-        raise FormulaError(f"{law} has other shape parameters", value=text, limit=limit)
+        raise FormulaError(
+            f"{law} has other shape parameters", value=text, limit=limit, remedy="give as many numbers as it names"
+        )
     if any(not n > 0.0 for n, name in zip(numbers, wanted, strict=True) if name != "centre"):
-        raise FormulaError("a shape parameter is not above zero", value=text, limit=0)
+        raise FormulaError("a shape parameter is not above zero", value=text, limit=0, remedy="give a larger number")
     return Factor(law, ast.unparse(quantity), numbers)

@@ -50,7 +50,11 @@ def check_parameters(case: Case) -> None:
         try:
             found = Robot.from_yaml(run.robot_yaml)
         except Sher3Error as error:
-            raise CaseError(f"{name}: its attached robot.yaml is wrong: {error.what}", value=error.value) from error
+            raise CaseError(
+                f"{name}: its attached robot.yaml is wrong: {error.what}",
+                value=error.value,
+                remedy="record again with a robot.yaml that `sher3 up` takes",
+            ) from error
         if found.digest() != wanted:
             raise CaseError(
                 f"{name}: recorded with other parameters than the case's robot.yaml",

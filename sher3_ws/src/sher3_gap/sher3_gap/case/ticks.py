@@ -63,7 +63,12 @@ def tick_grid(stamps: Stamps, expected: float, name: str) -> tuple[Stamps, Mask]
         raise CaseError(f"{name}: too short", value=f"{len(stamps)} ticks", limit=f"{LEAST_TICKS} ticks", remedy=remedy)
     if (steps <= 0).any():
         at = int(np.argmax(steps <= 0))
-        raise CaseError(f"{name}: the clock jumps back at tick {at}", value=f"{steps[at] * 1e-9:.6f} s", limit="> 0 s")
+        raise CaseError(
+            f"{name}: the clock jumps back at tick {at}",
+            value=f"{steps[at] * 1e-9:.6f} s",
+            limit="> 0 s",
+            remedy="cut the run there",
+        )
     period = float(np.median(steps)) * 1e-9
     if abs(period / expected - 1.0) > 0.01:
         raise CaseError(
@@ -107,7 +112,12 @@ def on_grid(stamps: Stamps, values: Array, ticks: Stamps, what: str, gap: Gap = 
     last = np.clip(np.searchsorted(stamps, ticks, side="right") - 1, 0, len(stamps) - 1)
     missing = stamps[last] != ticks
     if (count := int(missing.sum())) > LOST_SHARE * len(ticks):
-        raise CaseError(f"{what}: samples are missing", value=f"{count} of {len(ticks)}", limit=f"{LOST_SHARE:.0%}")
+        raise CaseError(
+            f"{what}: samples are missing",
+            value=f"{count} of {len(ticks)}",
+            limit=f"{LOST_SHARE:.0%}",
+            remedy="leave the run out, or record without drops",
+        )
     if gap == "hold":
         return np.ascontiguousarray(values[last]), missing
     if gap == "next":

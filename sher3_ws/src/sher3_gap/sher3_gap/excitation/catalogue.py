@@ -124,12 +124,24 @@ def excite(
         known = ", ".join(catalogue())
         raise ExcitationError("no such excitation", excitation=label, limit=known, remedy="use name or name_amplitude")
     if posture not in POSTURES:
-        raise ExcitationError("no such posture", excitation=label, value=posture, limit=", ".join(POSTURES))
+        raise ExcitationError.unknown("no such posture", posture, POSTURES, excitation=label)
     amplitude = float(match.group(2) or 1.0)
     if not 0.05 <= amplitude <= 1.5:
-        raise ExcitationError("amplitude out of range", excitation=label, value=amplitude, limit="0.05 to 1.5")
+        raise ExcitationError(
+            "amplitude out of range",
+            excitation=label,
+            value=amplitude,
+            limit="0.05 to 1.5",
+            remedy="write another amplitude behind the name, as in sweep_0.8",
+        )
     if not 2.0 <= duration <= 120.0:
-        raise ExcitationError("duration out of range [s]", excitation=label, value=duration, limit="2 to 120")
+        raise ExcitationError(
+            "duration out of range [s]",
+            excitation=label,
+            value=duration,
+            limit="2 to 120",
+            remedy="choose another duration",
+        )
     if set_point_jumps and entry.name == "steps":
         entry = _JUMPS
     time = np.arange(round(duration / robot.control_period)) * robot.control_period

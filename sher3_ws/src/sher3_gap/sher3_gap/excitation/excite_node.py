@@ -173,7 +173,7 @@ class _Turns:
         if node.failure is not None:
             raise node.failure
         if player.phase is not Phase.DONE:
-            raise PlayError("stopped before the end", value=player.phase.value)
+            raise PlayError("stopped before the end", value=player.phase.value, remedy="let it play to its end")
         return trimmed(read_run(bag, check=False), player.first, player.last)
 
 

@@ -92,7 +92,12 @@ def _read_header(path: Path) -> _Header:
     except ValidationError as error:
         first = error.errors()[0]
         where = ".".join(str(x) for x in first["loc"]) or "the file"
-        raise FileError(f"is not an excitation: {where}: {first['msg']}", path=path, limit=SCHEMA) from error
+        raise FileError(
+            f"is not an excitation: {where}: {first['msg']}",
+            path=path,
+            limit=SCHEMA,
+            remedy="name a file of `sher3 gap experiment`",
+        ) from error
     if PurePosixPath(header.data).name != header.data or header.data in ("", "..") or "\0" in header.data:
         remedy = "name a file in the same folder"
         raise FileError("data must be named by its plain name", path=path, value=repr(header.data), remedy=remedy)
@@ -107,10 +112,16 @@ def _read_samples(path: Path) -> tuple[np.ndarray, np.ndarray]:
         raise FileError(f"samples are no numbers: {error}", path=path, remedy="design it again") from error
     if position.ndim != 2 or position.shape[1] != 5 or velocity.shape != position.shape:
         raise FileError(
-            "samples have the wrong shape", path=path, value=(position.shape, velocity.shape), limit="(n, 5)"
+            "samples have the wrong shape",
+            path=path,
+            value=(position.shape, velocity.shape),
+            limit="(n, 5)",
+            remedy="design it again",
         )
     if not 2 <= len(position) <= MAX_TICKS:
-        raise FileError("number of samples", path=path, value=len(position), limit=f"2 to {MAX_TICKS}")
+        raise FileError(
+            "number of samples", path=path, value=len(position), limit=f"2 to {MAX_TICKS}", remedy="design it again"
+        )
     if not (np.isfinite(position).all() and np.isfinite(velocity).all()):
         raise FileError("a sample is not finite", path=path, remedy="design it again")
     return position, velocity

@@ -78,7 +78,12 @@ def read_verdict(path: Path, instead: str = EXPORT, bet: bool = False) -> Verdic
         raise ApplyError(str(error), value=error.value, limit=error.limit, remedy="name a verdict.json") from error
     except ValueError as error:
         reason = str(error).splitlines()[0]
-        raise ApplyError(f"{path}: is not a verdict", value=reason, limit=" or ".join(get_args(Schema))) from error
+        raise ApplyError(
+            f"{path}: is not a verdict",
+            value=reason,
+            limit=" or ".join(get_args(Schema)),
+            remedy="name a verdict.json of `sher3 gap diagnose`",
+        ) from error
     found = betting(found) if bet else found
     foreign = [c.actuator for c in found.causes if c.actuator not in PLACES]
     if foreign:
@@ -103,7 +108,9 @@ def effects_of(verdict: Verdict, robot: Robot) -> list[PlantEffect]:
     effects = to_effects(verdict.causes, robot)
     if not effects:
         names = ", ".join(c.effect for c in verdict.causes)
-        raise ApplyError("the simulator has no counterpart of the causes", value=names)
+        raise ApplyError(
+            "the simulator has no counterpart of the causes", value=names, remedy="correct the model by hand"
+        )
     return effects
 
 

@@ -31,7 +31,12 @@ def parse_gap(text: str) -> tuple[float, float]:
 
     match = re.fullmatch(r"(\d+(?:\.\d+)?):(\d+(?:\.\d+)?)", text)
     if match is None or not 0 < float(match.group(1)) < float(match.group(2)) <= 100:
-        raise ChallengeError("gap over floor is not a range", value=text, limit="0 < A < B <= 100, as in 0.5:30")
+        raise ChallengeError(
+            "gap over floor is not a range",
+            value=text,
+            limit="0 < A < B <= 100, as in 0.5:30",
+            remedy="write the smaller number first",
+        )
     return float(match.group(1)), float(match.group(2))
 
 

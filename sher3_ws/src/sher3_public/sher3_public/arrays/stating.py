@@ -61,10 +61,10 @@ class Stated:
         found = {}
         for name, unit in self.units.items():
             if name not in TAKES:
-                raise InputError("units of no such array", value=name, limit=", ".join(TAKES))
+                raise InputError.unknown("units of no such array", name, TAKES)
             known = spelled(unit)
             if known not in TAKES[name]:
-                raise InputError(f"unit of {name} is not known", value=unit, limit=", ".join(TAKES[name]))
+                raise InputError.unknown(f"unit of {name} is not known", unit, TAKES[name])
             found[name] = {**UNITS, **TIME_UNITS}[known]
         return found
 
