@@ -8,6 +8,7 @@ from sher3_diagnosis.thresholds import WORTH
 from sher3_chain.axes.causes.balance_at_rest import dry_first, leaves_at_rest, rest_loss, rivals_at_rest
 from sher3_chain.axes.causes.behind_encoder import friction_then_hidden, something_hides
 from sher3_chain.axes.causes.confounded_laws import told_by_travel
+from sher3_chain.axes.causes.told_by_release import told_by_release
 from sher3_chain.search.away_from_reversals import borne_out
 from sher3_chain.search.one_joint import of_one_joint
 
@@ -20,8 +21,9 @@ AXIS = SearchPlan(
         Opening(dry_first, leaves_at_rest),
         Opening(friction_then_hidden, something_hides, worth=WORTH, unseen=True),
     ),
-    reviews=(rivals_at_rest, told_by_travel, borne_out),
+    reviews=(rivals_at_rest, told_by_travel, borne_out, told_by_release),
 )
 """Plain laws at once, then richer ones. Where the choice leaves a force at rest that nothing holds, a second search
 starts with a dry friction; where an axis has one encoder, a third with what may hide behind it. In the end the
-forces at rest and the travel tell rivals apart, and causes that only reversals show are left out."""
+forces at rest and the travel tell rivals apart, causes that only reversals show are left out, and the motion of an axis
+that is let go tells which of the rivals foretells it."""

@@ -46,7 +46,7 @@ def refine_free(evidence: AxisEvidence, causes: list[Cause]) -> tuple[AxisEviden
         return mass, [_of(causes, index, factors) for index in range(len(causes))]
 
     def loss(x: Array) -> float:
-        return _loss(evidence, *changed(x))
+        return loss_of_motion(evidence, *changed(x))
 
     start = np.zeros(len(names) + with_mass)
     simplex = np.vstack([start, start + FIRST_STEP * np.eye(len(start))])
@@ -56,6 +56,8 @@ def refine_free(evidence: AxisEvidence, causes: list[Cause]) -> tuple[AxisEviden
         return evidence, causes
     mass, refined = changed(best.x)
     told = all(_holds(causes[i].parameters[n], refined[i].parameters[n].value) for i, n in names)
+    if with_mass and evidence.mass_interval is not None:
+        told &= evidence.mass_interval[0] <= mass <= evidence.mass_interval[1]
     return (replace(evidence, mass=mass), refined) if told else (evidence, causes)
 
 
@@ -68,7 +70,7 @@ def _holds(parameter: Parameter, value: float) -> bool:
     return (low is None or value >= low) and (high is None or value <= high)
 
 
-def _loss(evidence: AxisEvidence, mass: float, causes: Sequence[Cause]) -> float:
+def loss_of_motion(evidence: AxisEvidence, mass: float, causes: Sequence[Cause]) -> float:
     """Mean square error of the simulated positions, summed over the records."""
     axis, law, total = evidence.axis, law_of(causes), 0.0
     for run, view in zip(evidence.runs, evidence.records, strict=True):
