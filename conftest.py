@@ -1,8 +1,10 @@
 """What holds for all tests: one thread a process, rare garbage collection, marks found without reading every file."""
 
+import ctypes
 import gc
 import os
 
+import psutil
 import pytest
 
 # Two processes of tests share two cores: more threads of a library only wait for each other. The diagnosis of three
@@ -13,10 +15,26 @@ for _library in ("OMP", "OPENBLAS"):
 # Modules and thousands of collected tests are no garbage; looking at them again and again is 6 % of the processor time.
 gc.set_threshold(50_000, 20, 50)
 
+GROWTH = 300e6
+"""Bytes that a process may grow by before it gives back what no test needs: the C library keeps the arrays of every
+diagnosis for the next one, 250 of 500 MB after five cases."""
+_memory = psutil.Process().memory_info
+_give_back = getattr(ctypes.CDLL(None), "malloc_trim", int)  # other C libraries than GNU's give it back themselves
+_size = {"bytes": float("inf")}
+
 
 def pytest_collection_finish() -> None:
     """Leave out of every later collection what is there before the first test."""
     gc.freeze()
+    _size["bytes"] = _memory().rss
+
+
+def pytest_runtest_logfinish() -> None:
+    """Collect the garbage of a process that has grown, and give its memory back."""
+    if _memory().rss > _size["bytes"] + GROWTH:
+        gc.collect()
+        _give_back(0)
+        _size["bytes"] = _memory().rss
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
