@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from typing import ClassVar
 
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.effect import Best, Shape, Signature, column
@@ -29,6 +30,7 @@ class ReferenceScale(Page):
         "speed_limit": "slow references are reached, and only fast ones are not",
         "drive_lag": "a steady speed is reached",
     }
+    units: ClassVar[Mapping[str, str]] = {"relative": "1"}
     LEAST, LARGEST = 0.005, 0.5
     """Shares between which it is an error of a scale: below are what counts and clocks round, above another unit, or an
     axis that does not follow."""

@@ -113,7 +113,7 @@ def _at(
         return None
     trial = about_its_own(candidates, fit(evidence.data, [*plain, term]))
     found = without_impossible(evidence, trial) if possible(trial) else trial
-    if found.terms[-1].effect is not page or not possible(found):
+    if not found.terms or found.terms[-1].effect is not page or not possible(found):
         return None
     model, values = evidence.records[0].model, page.parameters({}, found.of(len(found.terms) - 1))
     mass = values.get("mass", values.get("relative", 0.0) * model.mass_of(link))
