@@ -17,12 +17,13 @@ FILE_OF = {
 PACKAGES = sorted(path.parent.name for path in SOURCES.glob("*/package.xml"))
 
 
-def imports(path: Path) -> set[str]:
+@cache
+def imports(path: Path) -> frozenset[str]:
     """Return the top-level names of every absolute import of a file, also of those inside functions.
 
     What only the type checker sees does not count, nor do the samples, which are plain tuples.
     """
-    return {module.split(".")[0] for module in modules(path)}
+    return frozenset(module.split(".")[0] for module in modules(path))
 
 
 @cache
@@ -63,6 +64,7 @@ def _walk(node: ast.AST) -> Iterator[ast.AST]:
         yield from _walk(child)
 
 
+@cache
 def package_of(path: Path) -> str:
     """Return the package a source file belongs to."""
     return path.relative_to(SOURCES).parts[0]
