@@ -30,6 +30,7 @@ from sher3_bringup.processes.up import beside, launch_nodes, prepare
 from sher3_bringup.settings.run_settings import RunSettings, checked, parse_processes
 from sher3_common import make_folder
 from sher3_runtime.clock import OFFSET_VARIABLE
+from sher3_runtime.domains import PROCESSES, claim_domain, release_domain
 
 from sher3_safety.measurement.recording import STANDS, Outcome, Recording
 from sher3_safety.measurement.verdict import UNMEASURED, Verdict, judge
@@ -37,8 +38,6 @@ from sher3_safety.rows.processes import HOG, WALL, WALL_STATES
 from sher3_safety.rows.row import LIMIT, Row, State, select
 from sher3_safety.runs.matrix import MatrixResult
 
-DOMAIN = 230
-"""ROS domain of these runs: those of tests and users are lower."""
 SPEED_UP, WATCHED, HELD, STILL = 2.6, 0.5, 0.3, 0.3
 """Seconds: from the start to the fault; of its observation; for which a process is held; and of the rest afterwards, in
 which hand and foot stay and a robot that has stopped must not move. With busy processes the rest is observed too."""
@@ -59,10 +58,12 @@ def run_wall(
     seed: int = 1,
     jobs: int = 1,
     say: Callable[[str], None] = lambda _: None,
-    domain: int = DOMAIN,
+    domain: int | None = None,
     limit: float = RUN_LIMIT,
 ) -> MatrixResult:
     """Run the cases in wall time, one after another; bags go to `folder/wall`. See `run_matrix`.
+
+    `domain`: ROS domain of all cases; by default each start claims one of its own.
 
     Raises:
         ConfigurationError: no component's name begins so.
@@ -84,13 +85,14 @@ def run_wall(
     return MatrixResult(verdicts, "sher3 safety --wall" + options, seed)
 
 
-def run_case(row: Row, state: State, folder: Path, seed: int = 1, domain: int = DOMAIN) -> Verdict:
+def run_case(row: Row, state: State, folder: Path, seed: int = 1, domain: int | None = None) -> Verdict:
     """Run one case until the robot was enabled and at speed when the fault set in; return its verdict."""
     outcome = None
     for attempt in range(TRIES):
         name = re.sub(r"[^\w.]+", "_", f"{row.name} {state.name}") + (f"-{attempt}" if attempt else "")
         try:
-            outcome = _run(row, state, folder / name, seed, domain)
+            with _domain(domain) as own:
+                outcome = _run(row, state, folder / name, seed, own)
         except StartError as error:
             return Verdict(row, state, None, (f"did not start: {error}",))
         ready = outcome is not None and outcome.operating in ("", state.operating)
@@ -99,6 +101,20 @@ def run_case(row: Row, state: State, folder: Path, seed: int = 1, domain: int = 
     else:
         return _unmeasured(row, state, outcome)
     return judge(row, state, outcome, recovered=False)
+
+
+@contextmanager
+def _domain(given: int | None) -> Iterator[int]:
+    """Claim a ROS domain for one start, if none is given.
+
+    Another run on this computer, or what is left of a robot that was killed in the start before, would be heard in a
+    domain that all share.
+    """
+    domain = claim_domain(PROCESSES) if given is None else given
+    try:
+        yield domain
+    finally:
+        release_domain(domain)
 
 
 def _unmeasured(row: Row, state: State, outcome: Outcome | None) -> Verdict:
