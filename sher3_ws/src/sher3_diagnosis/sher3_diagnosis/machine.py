@@ -40,7 +40,7 @@ class Rehearsal(NamedTuple):
         excitation: its name.
         purpose: what is to be run, and why.
         added: what the recorded runs had not, as a tracker or another temperature, in words; empty for none.
-        data: its runs without any cause: their residuals are nothing.
+        data: its runs, of which no residual is looked at.
     """
 
     excitation: str

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING
@@ -13,7 +13,7 @@ from sher3_diagnosis.attribute.rivals import Attribution
 from sher3_diagnosis.channel import Array, Channel, Mask
 from sher3_diagnosis.effect import Effect
 from sher3_diagnosis.finding import ExactFinding, Finding
-from sher3_diagnosis.machine import Policy
+from sher3_diagnosis.machine import Policy, Rehearsal
 from sher3_diagnosis.verdict import Cause, Interval
 from sher3_effects import computed, pages
 from sher3_effects.view import NominalAxis
@@ -27,6 +27,7 @@ from sher3_chain.axes.causes.refine import refine_free
 from sher3_chain.axes.causes.true_force import in_true_force
 from sher3_chain.axes.command.law import LAW, is_law, law_of_axis
 from sher3_chain.axes.evidence import AxisEvidence, gather_axis, levels_of
+from sher3_chain.axes.foreseen import foreseen
 from sher3_chain.axes.limits import LIMIT, limit_finding
 from sher3_chain.axes.power import least_seen
 from sher3_chain.axes.replay import replay
@@ -113,6 +114,10 @@ class Axes(Chain[AxisEvidence]):
         causes = with_second_pole(with_dead_band(causes)) if servo else in_true_force(causes)
         return evidence, [in_own_unit(cause, own) for cause in causes] if own else causes
 
+    def rehearsals(self, evidence: AxisEvidence) -> Iterator[Rehearsal]:
+        """Yield the recorded motions at other speeds, and with a known mass."""
+        yield from foreseen(evidence)
+
     def remarks(self, finding: Finding[AxisEvidence]) -> list[str]:
         """Say which mass was found, what the recorded signals cannot tell, and how the axis runs again."""
         again = replay(finding.evidence, finding.causes) if finding.significant else None
@@ -172,6 +177,10 @@ class Commands(Axes):
     ) -> tuple[AxisEvidence, list[Cause]]:
         """Return both as they are: a law is exact."""
         return evidence, causes
+
+    def rehearsals(self, evidence: AxisEvidence) -> Iterator[Rehearsal]:
+        """Yield none: what a law asks for is computed, not recorded again."""
+        yield from ()
 
     def remarks(self, finding: Finding[AxisEvidence]) -> list[str]:
         """Say whether the command is what its law states."""

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from sher3_chain.axes.foreseen import WEIGHED
 from sher3_chain.axes.machine import Axes, facts_of
 from sher3_chain.chain.machine import NO_REPEATS
 from sher3_chain.joint.record import AxesRun
@@ -107,7 +108,10 @@ def test_wrong_mass_and_force_scale_stay_rivals():
     named = {verdict.causes[0].effect, *verdict.causes[0].rivals}
     assert verdict.status == "under_excited"
     assert named == {"payload_mass", "torque_constant"}
-    assert set(verdict.next_experiment.separates) == named
+    asked = verdict.next_experiment
+    assert set(asked.separates) == named
+    assert asked.added == WEIGHED
+    assert asked.expected_odds > 0.9
 
 
 def test_a_force_no_effect_makes_is_not_explained():

@@ -62,7 +62,7 @@ def best_of(machine: Machine, finding: Finding, judged: Judged) -> tuple[Rehears
     """Return the experiment that promises most; what the recorded runs had not is added only where it is needed."""
     enough = SETTLED * judged.library
     best = None
-    for _, tries in groupby(machine.rehearsals(finding.evidence), key=lambda x: x.added):
+    for _, tries in groupby(machine.of(finding.evidence).rehearsals(finding.evidence), key=lambda x: x.added):
         told = [(x, prospect(finding, judged, x.data)) for x in tries]
         likeliest = max(told, key=lambda t: (min(t[1].odds, enough), t[1].separation))
         if best is None or likeliest[1].odds > best[1].odds:
