@@ -94,7 +94,7 @@ def test_folders_unused_for_a_week_are_removed(project: Path) -> None:
 
 def test_the_order_of_imports_does_not_matter(project: Path) -> None:
     """Each package alone, or after the others: the same folder."""
-    names = ["kinematics.kernel.delta.rail_up", "sim.transmission.place", "bags.mcap.kernels.count_records"]
+    names = ["kinematics.kernel.delta.rail_up", "sim.kernel.transmission.place", "bags.mcap.kernels.count_records"]
     script = (
         "from importlib import import_module as load\n"
         "for name in {names}:\n"
