@@ -7,7 +7,7 @@ from sher3_bags.errors import BagError, DamagedBagError, MissingTopicError, Topi
 from sher3_bags.playback.replay import Replay
 from sher3_description import load_robot
 
-runtime = pytest.importorskip("sher3_runtime")
+pytest.importorskip("sher3_runtime")
 pytestmark = pytest.mark.graph
 
 TOPICS = ["setpoint_js", "servo_jv", "measured_js", "force/measured_cf", "operating_state"]
@@ -65,10 +65,11 @@ def test_shifted_stamps_stand_on_the_grid(tmp_path, build):
 def test_never_the_second_publisher(tmp_path, build):
     from sher3_bags.playback.replay_node import ReplayNode
     from sher3_runtime import Graph
+    from sher3_runtime.execution.graph import Probe
 
     path = write_run(tmp_path / "bag", build(50))
     with Graph() as graph:
-        graph.add(runtime.graph.Probe, "servo_jv", name="driver", sends=("servo_jv",))
+        graph.add(Probe, "servo_jv", name="driver", sends=("servo_jv",))
         graph.add(ReplayNode, Replay(path, ["servo_jv"]), wait_for=1)
         with pytest.raises(TopicError, match="servo_jv: has a publisher already; value driver"):
             for _ in range(500):
@@ -105,11 +106,12 @@ def test_a_test_leaves_its_bag(tmp_path, request):
     from sher3_bags.recording.live import bag_folder, recorded
     from sher3_common.samples import JointSample
     from sher3_runtime import Graph
+    from sher3_runtime.execution.graph import Probe
 
     name = request.node.nodeid
     for _ in range(2):  # an earlier bag of the same test is replaced
         with pytest.raises(RuntimeError), Graph() as graph, recorded(graph, name, root=tmp_path) as recorder:
-            probe = graph.add(runtime.graph.Probe, name="driver", sends=("measured_js",))
+            probe = graph.add(Probe, name="driver", sends=("measured_js",))
             graph.step()
             for k in range(5):
                 probe.send("measured_js", JointSample(k * 2_000_000 + 1, (0.0, 1.0, 2.0, 3.0, float(k)), None, None))

@@ -2,10 +2,10 @@
 
 import pytest
 import yaml
+from linked_models import MODELS, tree_of
 from sher3_diagnosis.verdict import Identified, Parameter
 from sher3_export import export
 from sher3_export.xml_file import parse_xml
-from test_links import MODELS, tree_of
 from verdicts import cause, verdict
 
 FOUND = [

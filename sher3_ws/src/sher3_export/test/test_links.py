@@ -1,31 +1,12 @@
 """Links whose inertial parameters are wrong: written as bodies that can exist and move as the verdict says."""
 
-from xml.etree.ElementTree import tostring
-
 import numpy as np
 import pytest
-from sher3_chain.manipulator.bodies import bodies_of
+from linked_models import MJCF, MODELS, URDF, tree_of
 from sher3_chain.manipulator.rigid.dynamics import forces
 from sher3_export import export
-from sher3_export.targets.mjcf_body import skeleton
 from sher3_export.xml_file import parse_xml
 from verdicts import cause, verdict
-
-MJCF = """<mujoco><asset><mesh name="looks" file="nowhere.stl"/></asset><worldbody><body name="upper" pos="0 0 1">
-<joint name="shoulder" axis="0 1 0" pos="0.01 0 0"/><geom type="capsule" fromto="0 0 0 0.4 0 0" size="0.03" mass="2"/>
-<body name="fore" pos="0.4 0 0"><joint name="elbow" axis="0 1 0"/><geom type="mesh" mesh="looks"/>
-<inertial pos="0.15 0 0" mass="1" diaginertia="0.001 0.01 0.01"/>
-</body></body></worldbody></mujoco>"""
-URDF = """<robot name="r"><link name="base"/>
-<link name="upper"><inertial><origin xyz="0.2 0 0" rpy="0 0 0.3"/><mass value="2"/>
-<inertia ixx="0.002" iyy="0.03" izz="0.03" ixy="0" ixz="0" iyz="0"/></inertial></link>
-<link name="fore"><inertial><origin xyz="0.15 0 0"/><mass value="1"/>
-<inertia ixx="0.001" iyy="0.01" izz="0.01" ixy="0" ixz="0" iyz="0"/></inertial></link>
-<joint name="shoulder" type="revolute"><parent link="base"/><child link="upper"/><axis xyz="0 1 0"/></joint>
-<joint name="elbow" type="revolute"><parent link="upper"/><child link="fore"/><origin xyz="0.4 0 0"/>
-<axis xyz="0 1 0"/></joint></robot>"""
-MODELS = {"mjcf": (MJCF, "mujoco"), "urdf": (URDF, "robot")}
-
 
 HEAVIER = {"mass": 0.5, "mx": 0.1, "mz": 0.03, "iyy": 0.04}
 OF_HEAVIER = [10, 11, 13, 16]
@@ -34,11 +15,6 @@ OF_HEAVIER = [10, 11, 13, 16]
 def written(to, *causes, text=None):
     given, root = MODELS[to]
     return export(verdict(*causes), to, parse_xml(text or given, root))
-
-
-def tree_of(text):
-    root = parse_xml(text, "mujoco" if "<mujoco" in text else "robot")
-    return bodies_of(tostring(skeleton(root) if root.tag == "mujoco" else root, encoding="unicode"), "arm").tree
 
 
 def needed(tree, change=0.0):
