@@ -10,7 +10,7 @@ driver is told zero or stops; where the hand leaves, off the place where the tip
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from typing import NamedTuple
 
@@ -196,10 +196,15 @@ def results(cases: list[Case]) -> Iterator[str]:
                 ready = not case.last and end(run)
 
 
-if __name__ == "__main__":
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+def chosen(doc: str | None, cases: Sequence[Case]) -> None:
+    """Print a line for each case of those whose name has in it what is asked for, one regime after the other."""
+    parser = argparse.ArgumentParser(description=doc, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--only", default="", help="only those whose name has this in it")
     only = parser.parse_args().only
     for regime in (NEAR, FREE):
-        for line in results([case for case in CASES if case.regime is regime and only in case.name]):
+        for line in results([case for case in cases if case.regime is regime and only in case.name]):
             print(line, flush=True)
+
+
+if __name__ == "__main__":
+    chosen(__doc__, CASES)

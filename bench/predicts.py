@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import argparse
 import sys
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -103,21 +104,33 @@ def rms(*parts: NDArray[np.float64]) -> float:
     return float(np.sqrt(np.mean(np.concatenate([np.ravel(x) for x in parts]) ** 2)))
 
 
-def main() -> None:
-    """Print a line for each axis, and how many keep both bounds."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--seeds", default="7500:7520")
-    found = []
+def table(predict: Callable[[int], Errors], machines: str, seeds: str, words: tuple[str, str]) -> None:
+    """Print a line for each machine of the seeds that are asked for, and how many keep both bounds.
+
+    Args:
+        predict: errors of the machine of a seed.
+        machines: what they are.
+        seeds: range of them where none is asked for.
+        words: what the causes and the fit of the wrong structure are called.
+    """
+    parser = argparse.ArgumentParser(description=f"What causes of drawn {machines} foretell of another motion.")
+    parser.add_argument("--seeds", default=seeds)
+    found, (ours, wrong) = [], words
     for seed in range(*map(int, parser.parse_args().seeds.split(":"))):
-        e = predicted(drawn_axis(seed), drawn_axis(seed, motion=1))
+        e = predict(seed)
         found.append(e)
-        print(f"{seed}: causes {e.causes:.4f}  all columns {e.wrong:.4f}  true structure {e.true:.4f}", flush=True)
+        print(f"{seed}: {ours} {e.causes:.4f}  {wrong} {e.wrong:.4f}  true structure {e.true:.4f}", flush=True)
     ratios = np.array([(e.causes / e.wrong, e.causes / e.true) for e in found])
     half, alike = np.median(ratios, axis=0)
-    print(f"{len(found)} axes; median over all columns {half:.2f}, over the true structure {alike:.2f}")
-    print(f"at most {HALF} of all columns: {np.mean(ratios[:, 0] <= HALF):.2f}", end="; ")
+    print(f"{len(found)} {machines}; median over {wrong} {half:.2f}, over the true structure {alike:.2f}")
+    print(f"at most {HALF} of {wrong}: {np.mean(ratios[:, 0] <= HALF):.2f}", end="; ")
     print(f"at most {ALIKE} of the true structure: {np.mean(ratios[:, 1] <= ALIKE):.2f}")
 
 
+def of_axis(seed: int) -> Errors:
+    """Return the errors of a drawn axis in another motion of its own."""
+    return predicted(drawn_axis(seed), drawn_axis(seed, motion=1))
+
+
 if __name__ == "__main__":
-    main()
+    table(of_axis, "axes", "7500:7520", ("causes", "all columns"))

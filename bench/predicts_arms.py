@@ -13,8 +13,6 @@ model. Rest, where a friction may hold with any force up to its level, is left o
 
 from __future__ import annotations
 
-import argparse
-
 import mujoco
 import numpy as np
 import sher3.gap as gap
@@ -32,7 +30,7 @@ from ladder_arms import (
     served,
     with_causes,
 )
-from predicts import ALIKE, HALF, Errors, rms
+from predicts import Errors, rms, table
 from sher3_arms.truth.world import inverse
 from sher3_diagnosis.filter import low_pass
 from true_arm import BAND, Motion, motion_of
@@ -126,22 +124,5 @@ def judged(m: Motion) -> np.ndarray:
     return ok
 
 
-def main() -> None:
-    """Print a line for each arm, and how many keep both bounds."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--seeds", default="13000:13020")
-    found = []
-    for seed in range(*map(int, parser.parse_args().seeds.split(":"))):
-        e = predicted(seed)
-        found.append(e)
-        print(f"{seed}: corrected {e.causes:.4f}", end="  ")
-        print(f"all plain laws {e.wrong:.4f}  true structure {e.true:.4f}", flush=True)
-    ratios = np.array([(e.causes / e.wrong, e.causes / e.true) for e in found])
-    half, alike = np.median(ratios, axis=0)
-    print(f"{len(found)} arms; median over all plain laws {half:.2f}, over the true structure {alike:.2f}")
-    print(f"at most {HALF} of all plain laws: {np.mean(ratios[:, 0] <= HALF):.2f}", end="; ")
-    print(f"at most {ALIKE} of the true structure: {np.mean(ratios[:, 1] <= ALIKE):.2f}")
-
-
 if __name__ == "__main__":
-    main()
+    table(predicted, "arms", "13000:13020", ("corrected", "all plain laws"))

@@ -8,13 +8,12 @@ As `bench/attacks.py`, whose robot and measure these use: 0.8 s each; travel is 
 
 from __future__ import annotations
 
-import argparse
 from collections.abc import Callable
 from functools import partial
 from itertools import count
 
 import numpy as np
-from attacks import LEGS, TICK, Case, goes, results
+from attacks import LEGS, TICK, Case, chosen, goes
 from sher3_common.operating_state import StateCommand
 from sher3_common.samples import TextSample
 from sher3_drivers.bus.frame import iter_frames, pack_frames
@@ -183,8 +182,4 @@ CASES = (
 
 
 if __name__ == "__main__":
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--only", default="", help="only those whose name has this in it")
-    only = parser.parse_args().only
-    for line in results([case for case in CASES if only in case.name]):
-        print(line, flush=True)
+    chosen(__doc__, CASES)
