@@ -50,6 +50,7 @@ class Drives:
         on_tick(self.probe, lambda _stamp: self.probe.send("supervisor/heartbeat", TextSample(self.beat)))
 
     def state(self, text, action="NONE"):
+        self.graph.step()  # a heartbeat comes before the first state
         self.beat = f"{text} {action}"
         self.probe.send("operating_state", TextSample(text))
         self.graph.step(8)

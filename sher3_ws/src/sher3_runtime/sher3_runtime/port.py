@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections import deque
 from collections.abc import Callable
 from typing import Any
 from weakref import WeakKeyDictionary
@@ -46,6 +47,8 @@ GAPLESS = frozenset(
 """Streams with a sample at every tick: a stamp that skips a tick means a lost sample."""
 ONCE_A_TICK = GAPLESS | {"servo_cv"}
 """Streams with at most one sample for each tick, whose stamp it bears."""
+REMEMBERED = 8
+"""Samples of a latched topic that stepped time remembers: more than any node sends in a tick."""
 
 
 class Subscribed:
@@ -107,6 +110,8 @@ class Ports:
         turn: Then, the right to run this node's code.
         post: What carries its samples instead of the middleware; None without one.
         boxes: Its queues there, by the pointers of its subscriptions.
+        sent: In stepped time, how many samples it sent to the middleware, by topic; `received`: how many came from it.
+        last_sent: In stepped time, the newest `REMEMBERED` samples of each latched topic; `last_received`: the same.
     """
 
     def __init__(self, node: Node) -> None:
@@ -127,6 +132,8 @@ class Ports:
         self.subscriptions: dict[str, Any] = {}
         self.sent: dict[str, int] = {}
         self.received: dict[str, int] = {}
+        self.last_sent: dict[str, deque[bytes]] = {}
+        self.last_received: dict[str, deque[bytes]] = {}
 
     def leave(self, node: Node, name: str, subscription: Any) -> None:
         """Take a subscription off the middleware: its samples come from within the process."""
@@ -138,6 +145,7 @@ class Ports:
         self.subscribed.pop(pointer, None)
         self.subscriptions.pop(name, None)
         self.received.pop(name, None)
+        self.last_received.pop(name, None)
         node.destroy_subscription(subscription)
 
     def open_box(self, name: str, subscription: Any, deliver: Callable[[bytes], None] | None, depth: int) -> None:
@@ -162,7 +170,25 @@ class Ports:
         if self.post is not None:
             return self.post.sender(topic.name, topic.qos.durability == "transient_local")
         # The handle's own method: rclpy's wrapper would enter the handle's context at each call.
-        return publisher.handle.publish_raw
+        return self._remembering(topic, self.last_sent, publisher.handle.publish_raw)
+
+    def receiver(self, topic: Topic, deliver: Callable[[bytes], None]) -> Callable[[bytes], None]:
+        """Return what takes the bytes that the middleware brings."""
+        return self._remembering(topic, self.last_received, deliver)
+
+    def _remembering(
+        self, topic: Topic, last: dict[str, deque[bytes]], go_on: Callable[[bytes], None]
+    ) -> Callable[[bytes], None]:
+        """Return `go_on`; where stepped time has to know which latched sample was the last, one that notes it first."""
+        if self.post is not None or not self.clock.stepped or topic.qos.durability != "transient_local":
+            return go_on
+        newest = last[topic.name] = deque[bytes](maxlen=REMEMBERED)
+
+        def remember(data: bytes) -> None:
+            newest.append(data)
+            go_on(data)
+
+        return remember
 
     def decoder(self, topic: Topic) -> Callable[[bytes], Any]:
         """Return what makes samples of the bytes of a topic."""

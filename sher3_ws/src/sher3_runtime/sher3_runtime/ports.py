@@ -83,7 +83,7 @@ def subscribe(
     if raw:
         decode, garbage = port.decoder(topic), port.statistics.garbage
 
-        def deliver(data: Any) -> None:
+        def take(data: bytes) -> None:
             port.received[name] += 1
             try:
                 sample = decode(data)
@@ -95,6 +95,8 @@ def subscribe(
                 garbage[name] = garbage.get(name, 0) + 1
                 return
             receive(sample)
+
+        deliver = port.receiver(topic, take)
     else:
 
         def deliver(data: Any) -> None:
@@ -313,10 +315,11 @@ def subscribe_raw(node: Node, name: str, callback: Callable[[bytes], None], dept
         profile.depth = depth
     port.received[name] = 0
 
-    def deliver(data: bytes) -> None:
+    def count(data: bytes) -> None:
         port.received[name] += 1
         callback(data)
 
+    deliver = port.receiver(topic, count)
     events = SubscriptionEventCallbacks(use_default_callbacks=False)
     kind = message_class(topic.type)
     subscription = node.create_subscription(kind, topic.full_name, deliver, profile, raw=True, event_callbacks=events)

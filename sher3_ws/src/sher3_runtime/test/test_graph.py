@@ -5,6 +5,7 @@ from itertools import pairwise
 import pytest
 from rclpy.node import Node
 from sher3_common.samples import JoySample, TextSample, WrenchSample
+from sher3_description import TOPICS
 from sher3_runtime import (
     NODE_OPTIONS,
     Graph,
@@ -17,7 +18,8 @@ from sher3_runtime import (
     subscribe_raw,
 )
 from sher3_runtime.codec.cdr import codec
-from sher3_runtime.ports import UnknownTopic, ports
+from sher3_runtime.ports import UnknownTopic, ports, qos_profile
+from std_msgs.msg import String
 from std_srvs.srv import Trigger
 
 pytestmark = pytest.mark.graph
@@ -128,8 +130,35 @@ def test_latched_topics_reach_a_late_subscriber():
         early.send("operating_state", TextSample("ENABLED"))
         late = graph.probe("operating_state")
         graph.step()
-        graph.until(lambda: late.samples["operating_state"])
         assert late.samples["operating_state"] == [TextSample("ENABLED")]
+
+
+def test_settled_means_that_latched_topics_are_up_to_date():
+    """A reader keeps one sample: of several that are sent at once it has the last, whoever came when."""
+    with Graph() as graph:
+        sender = graph.probe(sends=("operating_state", "motion/status"))
+        readers = [graph.probe("operating_state", "motion/status") for _ in range(4)]
+        graph.step()
+        for k in range(30):
+            for text in (f"a{k}", f"b{k}"):
+                sender.send("operating_state", TextSample(text))
+            sender.send("motion/status", TextSample(f"m{k}"))
+            graph.settle()
+            assert {reader.samples["operating_state"][-1].text for reader in readers} == {f"b{k}"}
+            assert {reader.samples["motion/status"][-1].text for reader in readers} == {f"m{k}"}
+
+
+def test_a_strangers_sample_on_a_latched_topic_holds_nobody_up():
+    """It may take the place of the last one in the reader's queue, which then never comes."""
+    with Graph() as graph:
+        sender, reader = graph.probe(sends=("operating_state",)), graph.probe("operating_state")
+        stranger = sender.create_publisher(String, "operating_state", qos_profile(TOPICS["operating_state"].qos))
+        for k in range(20):
+            graph.step()
+            sender.send("operating_state", TextSample(f"a{k}"))
+            stranger.publish(String(data=f"z{k}"))
+            graph.settle()
+        assert reader.samples["operating_state"]
 
 
 def test_entities_may_come_and_go():

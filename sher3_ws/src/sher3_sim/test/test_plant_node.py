@@ -51,6 +51,7 @@ class Rig:
         on_tick(self.probe, lambda _stamp: self.probe.send("supervisor/heartbeat", TextSample(self.beat)))
 
     def enable(self):
+        self.graph.step()  # a heartbeat comes before the first state
         self.beat = "ENABLED NONE"
         self.probe.send("operating_state", TextSample("ENABLED"))
         self.graph.step(10)

@@ -7,6 +7,7 @@ Samples go by the middleware, or by the `post` of the graph, which takes half of
 from __future__ import annotations
 
 import time
+from collections import deque
 from collections.abc import Callable, Iterator
 from contextlib import nullcontext
 from functools import partial
@@ -30,8 +31,9 @@ from sher3_runtime.post import Post
 from sher3_runtime.tick import Tick
 
 N = TypeVar("N", bound=Node)
-Route = tuple[str, list[dict[str, int]], list[dict[str, int]]]
-"""A topic and, by end, the counters of the samples sent and received."""
+V = TypeVar("V")
+Route = tuple[str, list[dict[str, V]], list[dict[str, V]]]
+"""A topic and what its senders and its receivers note, by topic."""
 
 
 class NotSettled(Sher3Error):
@@ -71,7 +73,8 @@ class Graph:
         self._compositions: set[Composition] = set()
         self._patience = patience
         self._matched = False
-        self._routes: list[Route] = []
+        self._routes: list[Route[int]] = []
+        self._latches: list[Route[deque[bytes]]] = []
         self._stamp = self.clock.start_ns
 
     def add(self, factory: Callable[..., N], *arguments: Any, **settings: Any) -> N:
@@ -91,7 +94,8 @@ class Graph:
             self._compositions.add(composition)
         self.nodes.append(node)
         self.executor.add_node(node)
-        self._matched, self._routes = False, self._find_routes()
+        self._matched = False
+        self._find_routes()
         self._expect_nothing(node)
         return node
 
@@ -134,7 +138,7 @@ class Graph:
             self._paused.append(one)
             self.executor.remove_node(one)
             self._hold(one, True)
-        self._routes = self._find_routes()
+        self._find_routes()
 
     def resume(self, node: Node) -> None:
         """Let a paused node go on: it gets first what waits in its queues; what did not fit into them is lost."""
@@ -149,7 +153,7 @@ class Graph:
         for one in process:
             self._paused.remove(one)
             self.nodes.append(one)
-        self._routes = self._find_routes()
+        self._find_routes()
         for one in process:
             self._expect_nothing(one)
 
@@ -212,7 +216,7 @@ class Graph:
             time.sleep(0.0005)
 
     def _missing(self) -> dict[str, int]:
-        """Return the number of samples on the way, by topic."""
+        """Return the number of samples on the way, by topic; of a latched topic, of readers without its last sample."""
         missing = {}
         for name, sent, received in self._routes:
             # Written out: this is asked some five times a tick.
@@ -224,22 +228,33 @@ class Graph:
                 on_the_way -= counts[name]
             if on_the_way:
                 missing[name] = on_the_way
-        return missing
+        return missing or self._not_up_to_date()
 
-    def _find_routes(self) -> list[Route]:
-        """Return the counters of each topic that has both ends in the graph.
+    def _not_up_to_date(self) -> dict[str, int]:
+        """Return how many readers of a latched topic have no sample, or one that its sender has replaced since.
 
-        Latched topics are left out: their samples come in their own time. So is all that the post delivers at once.
+        A stranger's sample, which may take the place of the last one in a reader's queue, counts as up to date.
+        """
+        late = {}
+        for name, sent, received in self._latches:
+            newest = [samples[name][-1] for samples in sent if samples[name]]
+            behind = [got for got in received if not got[name] or got[name][-1] not in newest]
+            if newest and behind:
+                replaced = {data for samples in sent for data in samples[name]}
+                late[name] = sum(not got[name] or got[name][-1] in replaced for got in behind)
+        return {name: count for name, count in late.items() if count}
+
+    def _find_routes(self) -> None:
+        """Find the two ends of each topic in the graph; what the post delivers at once needs no waiting.
+
+        Samples of a stream are counted. Of a latched topic a reader keeps one, so the last one is compared.
         """
         if self._post is not None:
-            return []
+            return
         senders, receivers = list(map(ports, [*self.nodes, *self._paused])), list(map(ports, self.nodes))
-        volatile = (name for name, topic in TOPICS.items() if topic.qos.durability == "volatile")
-        routes = [
-            (name, [p.sent for p in senders if name in p.sent], [p.received for p in receivers if name in p.received])
-            for name in volatile
-        ]
-        return [route for route in routes if route[1] and route[2]]
+        self._routes = _with_both_ends("volatile", [p.sent for p in senders], [p.received for p in receivers])
+        latest = [p.last_sent for p in senders], [p.last_received for p in receivers]
+        self._latches = _with_both_ends("transient_local", *latest)
 
     def _match(self) -> None:
         """Wait until every publisher of the graph has found every subscriber."""
@@ -252,7 +267,9 @@ class Graph:
         for name, reader in readers:
             expected = sum(1 for topic, _ in writers if topic == name)
             _wait(reader.handle.get_publisher_count, expected, deadline, name)
-        self._matched, self._routes = True, self._find_routes()
+        self._matched = True
+        self._find_routes()
+        self.settle()  # latched samples that were sent before their readers were found
 
     def close(self) -> None:
         """Close the nodes and leave the domain."""
@@ -267,6 +284,13 @@ class Graph:
 
     def __exit__(self, kind: type | None, error: BaseException | None, trace: TracebackType | None) -> None:
         self.close()
+
+
+def _with_both_ends(durability: str, sent: list[dict[str, V]], received: list[dict[str, V]]) -> list[Route[V]]:
+    """Return the routes of the topics of one durability that somebody sends and somebody receives."""
+    names = [name for name, topic in TOPICS.items() if topic.qos.durability == durability]
+    routes = [(name, [by for by in sent if name in by], [by for by in received if name in by]) for name in names]
+    return [route for route in routes if route[1] and route[2]]
 
 
 def _phase(tick: Tick) -> int:
