@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
-from sher3_control.motion.spline import spline_through
+from sher3_control.motion.planned.spline import spline_through
 
 
 @pytest.mark.parametrize("count", [4, 5, 65])

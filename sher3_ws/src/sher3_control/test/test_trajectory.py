@@ -7,8 +7,8 @@ from hypothesis import strategies as st
 from law_bench import ROBOT
 from sher3_common import Sher3Error
 from sher3_control.errors import TrajectoryError
-from sher3_control.motion.tip_move import plan_tip_move
-from sher3_control.motion.trajectory import double_s, plan_joint_move
+from sher3_control.motion.planned.tip_move import plan_tip_move
+from sher3_control.motion.planned.trajectory import double_s, plan_joint_move
 from sher3_kinematics import RobotKinematics, Unreachable
 
 KINEMATICS = RobotKinematics(ROBOT)

@@ -18,8 +18,8 @@ from sher3_control.motion.commands import PoseCommand
 from sher3_control.motion.cooperative import RESTING, VelocityModes
 from sher3_control.motion.deflection import DeflectionCompensation
 from sher3_control.motion.modes import MotionMode, Step
-from sher3_control.motion.move_modes import MoveJoints, MoveTip
 from sher3_control.motion.ownership import Mode, Ownership
+from sher3_control.motion.planned.move_modes import MoveJoints, MoveTip
 from sher3_control.motion.pose import tool_axis
 from sher3_control.motion.servo_modes import ServoJointVelocity, ServoPose, ServoPosition, ServoTwist
 from sher3_control.motion.speed_cap import Regime, axis_caps, speed_cap

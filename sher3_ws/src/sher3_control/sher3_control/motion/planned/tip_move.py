@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 from sher3_kinematics import RobotKinematics
 
-from sher3_control.motion.spline import Spline, spline_through
-from sher3_control.motion.trajectory import DoubleS, double_s
+from sher3_control.motion.planned.spline import Spline, spline_through
+from sher3_control.motion.planned.trajectory import DoubleS, double_s
 
 Array = NDArray[np.float64]
 

@@ -15,10 +15,10 @@ from sher3_kinematics import RobotKinematics
 from sher3_control.errors import CommandRejected
 from sher3_control.motion.commands import JointCommand, PoseCommand
 from sher3_control.motion.modes import Step, require_finite, require_timely
+from sher3_control.motion.planned.tip_move import plan_tip_move
+from sher3_control.motion.planned.trajectory import plan_joint_move
 from sher3_control.motion.pose import tool_axis
 from sher3_control.motion.speed_cap import PLANNED, Regime, axis_caps, planned_share, speed_cap
-from sher3_control.motion.tip_move import plan_tip_move
-from sher3_control.motion.trajectory import plan_joint_move
 from sher3_control.settings import MotionSettings
 
 Array = NDArray[np.float64]
