@@ -28,7 +28,7 @@ def printed(as_json: bool, data: dict[str, Any], text: str) -> None:
 @app.command(epilog="Example: sher3 record bags/trial --seconds 20")
 def record(
     output: Annotated[Path | None, typer.Argument(help="New folder; default bags/<date and time>.")] = None,
-    seconds: Annotated[float | None, typer.Option(help="Stop after this time; default at Ctrl-C.")] = None,
+    seconds: Annotated[float | None, typer.Option(help="End this long after the first sample; else at Ctrl-C.")] = None,
     topic: Topics = None,
     robot: Annotated[Path | None, typer.Option(help="robot.yaml to attach; default the nominal one.")] = None,
     domain: Domain = 0,

@@ -156,6 +156,28 @@ def test_a_full_disk_is_an_error_in_diagnostics_and_ends_a_required_recording(tm
     assert 200 < len(found["measured_js"]) < 1200
 
 
+def test_the_time_of_a_recording_counts_from_the_first_sample(tmp_path, build, monkeypatch):
+    """The robot is found after a second: the recording lasts its 0.2 s all the same. Without a robot it ends."""
+    from sher3_bags.playback.replay_node import ReplayNode
+    from sher3_bags.recording.recorder_node import RecorderNode
+    from sher3_runtime import Graph
+
+    monkeypatch.setattr("sher3_bags.recording.recorder_node.FOUND", 2.0)
+    path = write_run(tmp_path / "bag", build(300))
+    with Graph() as graph:
+        recorder = graph.add(RecorderNode, tmp_path / "again", load_robot(), topics=[*TOPICS, "diagnostics"])
+        graph.step(500)
+        assert recorder.lasts(0.2)
+        graph.add(ReplayNode, Replay(path, TOPICS), wait_for=1)
+        while recorder.lasts(0.2):
+            graph.step()
+    assert len(read_run(tmp_path / "again")["measured_js"]) == pytest.approx(100, abs=3)
+    with Graph() as graph:
+        alone = graph.add(RecorderNode, tmp_path / "nobody", load_robot(), topics=[*TOPICS, "diagnostics"])
+        graph.step(1001)
+        assert not alone.lasts(0.2) and alone.lasts(4.0)
+
+
 def test_a_recorder_that_looked_later_than_its_queues_hold_says_so():
     from sher3_bags.recording.recorder_node import DEPTH, overflow
 

@@ -108,17 +108,21 @@ def false_forces(control: ControlSettings, kinematics: RobotKinematics, cap: Spe
     found = []
     for force in HANDS:
         speed = min(cap.linear, law.linear_gain * max(0.0, force - law.force_deadband))
-        detection = _noticed(HandDetector(kinematics, control), force, speed, period) + late
+        detection = _noticed(HandDetector(kinematics, control), force, speed, period, supervisor.hand_gap) + late
         found.append(FalseForce(force, detection, speed * (detection + stop) if speed else 0.0))
     return found
 
 
-def _noticed(detector: HandDetector, force: float, speed: float, period: float) -> float:
-    """Return when the detector objects to a hand that has left [s], without noise."""
+def _noticed(detector: HandDetector, force: float, speed: float, period: float, gap: float) -> float:
+    """Return when the detector objects to a hand that has left [s], without noise.
+
+    Before that nothing changes, so the longest ticks it knows of, `gap` [s], tell as much as its own.
+    """
     tick, felt, moved = round(period * 1e9), force * np.eye(5)[2], speed * period * np.eye(6)[2]
-    begin = 2 * 10**9
-    for stamp in range(0, begin, tick):
+    settling = range(0, 2 * 10**9, round(gap * 1e9))
+    for stamp in settling:
         detector.follow(stamp, felt, -felt)
+    begin = settling[-1] + tick
     for stamp in range(begin, begin + round(LATEST * 1e9), tick):
         detector.follow(stamp, felt, 0.0 * felt, moved)
         if detector.check(stamp) is not None:

@@ -20,6 +20,7 @@ from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 from rclpy.subscription import Subscription
 from sher3_common.samples import DiagnosticSample
+from sher3_common.stamps import nanoseconds
 from sher3_description import TOPICS, Robot, load_robot
 from sher3_runtime import advertise, environment
 from sher3_runtime.codec.messages import message_class
@@ -36,6 +37,8 @@ from sher3_bags.run import RunMetadata
 POLL_NS = 40_000_000
 """Time between two looks [ns]: the more come at once, the less each costs; ring and queues hold seconds."""
 REPORT_NS = 1_000_000_000
+FOUND = 5.0
+"""Time [s] in which a busy computer finds the topics of a robot: a quiet one takes less than 0.5 s."""
 OK, ERROR = 0, 2
 
 DEPTH = 5000
@@ -163,7 +166,8 @@ class RecorderNode(Node):
         self.failure: BagError | None = None
         self.unrecorded = 0
         self._required = required
-        self._looked = clock_of(self).now()
+        self._begun = self._looked = clock_of(self).now()
+        self._first: int | None = None
         self._longest_wait = 0
         self._ears: Ears | None = None
         self._publish_report = advertise(self, "diagnostics")
@@ -201,6 +205,14 @@ class RecorderNode(Node):
                 self.recorder.write(name, data, arrived, sent)
             except BagError as error:
                 self._fail(error)
+            if self._first is None and name != "diagnostics":  # those are the recorder's own
+                self._first = arrived
+
+    def lasts(self, seconds: float) -> bool:
+        """Return whether it goes on: for `seconds` from the robot's first sample, or until none came in `FOUND`."""
+        if self._first is None:
+            return clock_of(self).now() < self._begun + nanoseconds(max(seconds, FOUND))
+        return clock_of(self).now() < self._first + nanoseconds(seconds)
 
     def _fail(self, error: BagError) -> None:
         """Say that the recording has ended; end the node if the recording is required."""
@@ -249,7 +261,7 @@ def run(
     seconds: float | None = None,
     domain: int | None = None,
 ) -> dict[str, dict[str, int]]:
-    """Record in a process of its own until a signal or for `seconds`; return the counts per topic.
+    """Record in a process of its own until a signal or for `seconds` (`lasts`); return the counts per topic.
 
     `domain`: ROS domain id; that of the environment by default.
 
@@ -261,8 +273,7 @@ def run(
     try:
         stop = stop_on_signals()
         node = RecorderNode(output, robot, topics=topics)
-        end = time.monotonic() + (float("inf") if seconds is None else seconds)
-        spin([node], stop=lambda: stop() or time.monotonic() > end, diagnostics=False)
+        spin([node], stop=lambda: stop() or not (seconds is None or node.lasts(seconds)), diagnostics=False)
         return node.counts
     finally:
         rclpy.try_shutdown()
