@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
+from documentation.forked_python import ForkedPython
 from documentation.inputs import Inputs
 from documentation.terminal import Terminal
 from sher3_runtime.domains import PROCESSES, claim_domain, release_domain
@@ -36,10 +37,18 @@ def command_tree() -> dict:
 
 
 @pytest.fixture(scope="session")
-def open_terminal(domain: int, command_tree: dict) -> Callable[..., Terminal]:
+def forked_python(tmp_path_factory: pytest.TempPathFactory) -> Iterator[ForkedPython]:
+    """What stands for `python` and `sher3` where nothing is measured."""
+    forked = ForkedPython(tmp_path_factory.mktemp("forked"))
+    yield forked
+    forked.close()
+
+
+@pytest.fixture(scope="session")
+def open_terminal(domain: int, command_tree: dict, forked_python: ForkedPython) -> Callable[..., Terminal]:
     """Return a function that opens a terminal in a folder; `empty`: in an empty one."""
     takes_domain = {name for name, command in command_tree.items() if any("--domain" in p.opts for p in command.params)}
-    return lambda folder, empty=False: Terminal(folder, domain, takes_domain, LIMIT, empty)
+    return lambda folder, empty=False: Terminal(folder, domain, takes_domain, LIMIT, empty, forked_python)
 
 
 @pytest.fixture(scope="session")

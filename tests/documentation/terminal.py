@@ -11,6 +11,7 @@ import time
 from pathlib import Path
 
 from documentation.commands import Command, in_company, shortened
+from documentation.forked_python import ForkedPython
 from processes import child_environment
 from sources import ROOT
 
@@ -35,10 +36,20 @@ class Terminal:
         takes_domain: full names of the commands with an option `--domain`.
         limit: seconds that one command may take.
         empty: the folder has nothing but the environment, whose commands are found after its activation alone.
+        forked: what stands for `python` and `sher3` where a command is not one in wall time; None: nothing does.
     """
 
-    def __init__(self, folder: Path, domain: int, takes_domain: set[str], limit: float, empty: bool = False) -> None:
+    def __init__(
+        self,
+        folder: Path,
+        domain: int,
+        takes_domain: set[str],
+        limit: float,
+        empty: bool = False,
+        forked: ForkedPython | None = None,
+    ) -> None:
         self.folder, self.domain, self.takes_domain, self.limit = folder, domain, takes_domain, limit
+        self.forked = forked
         self.running: list[tuple[subprocess.Popen, Path]] = []
         self.lent, self.broken = False, False
         self.empty, self.activation = empty, ""
@@ -74,7 +85,7 @@ class Terminal:
         done = subprocess.run(
             self._words(command.line),
             cwd=self.folder,
-            env=self._environment(),
+            env=self._environment(command.in_wall_time),
             stdin=subprocess.DEVNULL,
             capture_output=True,
             text=True,
@@ -139,11 +150,12 @@ class Terminal:
         asked = in_company(shortened(shown), self.domain, self.takes_domain)
         return ["bash", "-c", f"set -o pipefail; {self.activation}{line.replace(shown, asked)}"]
 
-    def _environment(self) -> dict[str, str]:
+    def _environment(self, in_wall_time: bool = True) -> dict[str, str]:
         ours = str(Path(sys.executable).parent)
         paths = [path for path in os.environ["PATH"].split(":") if path != ours]
+        stand_ins = [] if in_wall_time or self.forked is None else [str(self.forked.folder)]
         return child_environment(
-            PATH=":".join(paths if self.empty else [ours, *paths]),
+            PATH=":".join(paths if self.empty else [*stand_ins, ours, *paths]),
             # A page may write to the home folder; the compiled kernels stay where they are.
             HOME=str(self.folder / "home"),
             XDG_CACHE_HOME=os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache"),

@@ -17,12 +17,12 @@ def code_of(notebook):
     return ["".join(cell["source"]) for cell in cells if cell["cell_type"] == "code"]
 
 
-def run(code, folder):
+def run(python, code, folder):
     """Return what the cells print, run one after the other."""
     (folder / "cells.py").write_text("\n\n".join(code))
     environment = {**os.environ, "MPLBACKEND": "agg"}
     done = subprocess.run(
-        [sys.executable, "cells.py"], cwd=folder, env=environment, capture_output=True, text=True, timeout=300
+        [python, "cells.py"], cwd=folder, env=environment, capture_output=True, text=True, timeout=300
     )
     assert done.returncode == 0, done.stderr[-3000:]
     return done.stdout
@@ -32,14 +32,14 @@ def run(code, folder):
 def test_the_notebook_runs(tmp_path):
     code = code_of(NOTEBOOK)
     assert len(code) == 4
-    said = run(code, tmp_path)
+    said = run(sys.executable, code, tmp_path)
     assert "attributed" in said and "backlash on tilt" in said
     assert (tmp_path / "difference.png").stat().st_size > 5000
 
 
-def test_the_notebook_of_one_call_runs(tmp_path):
+def test_the_notebook_of_one_call_runs(tmp_path, forked_python):
     """And writes nothing but the picture that it is told to."""
-    said = run(code_of(ONE_CALL), tmp_path)
+    said = run(forked_python.folder / "python", code_of(ONE_CALL), tmp_path)
     assert "attributed: Coulomb friction on elbow" in said
     assert {path.name for path in tmp_path.iterdir()} == {"cells.py", "gap.png"}
 

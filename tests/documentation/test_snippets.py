@@ -28,14 +28,15 @@ def snippets() -> list[object]:
 
 @pytest.mark.parametrize("here", snippets())
 @pytest.mark.flaky(reruns=2)
-def test_snippets_of_a_page(here, terminal, inputs):
-    """In an interpreter of their own, in a folder with the recordings they read."""
+def test_snippets_of_a_page(here, terminal, inputs, forked_python):
+    """In a process of their own, in a folder with the recordings they read."""
     text = "\n".join(block.text for block in here)
     inputs.put(terminal.folder, text)
     (terminal.folder / "snippets.py").write_text(text)
     environment = {**os.environ, "MPLBACKEND": "agg"}
+    runs_nodes = any(name in text for name in RUNS_NODES)
     done = subprocess.run(
-        [sys.executable, "snippets.py"],
+        [sys.executable if runs_nodes else forked_python.folder / "python", "snippets.py"],
         cwd=terminal.folder,
         env=environment,
         capture_output=True,
