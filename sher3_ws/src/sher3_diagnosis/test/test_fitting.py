@@ -1,5 +1,7 @@
 """Least squares with an exact leave-one-run-out loss, on three runs of two samples."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from sher3_diagnosis.fit.fitting import fit, make_term, solve
@@ -41,6 +43,17 @@ def test_terms_know_their_coefficients(data):
     assert found.of(1) == pytest.approx([3.0], rel=1e-6)
     assert found.loro_of(1).shape == (3, 1)
     assert not fit(data, terms[:1]).admissible  # a friction of zero is none
+
+
+def test_causes_that_take_one_another_back_are_told_by_their_size():
+    """Samples of +1 and -1 by columns of (1, 1) and (1, 1.05): 41 of the first and -40 of the second."""
+    data = evidence_of([run([1.0, -1.0]), run([1.0, -1.0])]).data
+    first = make_term(data, OFFSET, "axis", {})
+    columns = [{c: x * [[1.0], [1.05]] for c, x in each.items()} for each in first.columns]
+    second = replace(first, columns=columns, products={})
+    assert fit(data, [first, second]).cancelled == pytest.approx(41.0, rel=0.05)
+    assert fit(data, [make_term(data, DIRECTION, "axis", {})]).cancelled == pytest.approx(1.0)
+    assert fit(data, []).cancelled == 0.0
 
 
 def test_collinear_columns_are_solved_and_dead_ones_are_zero():

@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 from sher3_diagnosis.attribute.candidates import Candidates
 from sher3_diagnosis.attribute.rivals import with_rivals
+from sher3_diagnosis.finding import Finding
 from sher3_diagnosis.fit.fitting import fit, make_term
+from sher3_diagnosis.judge.items import items_of
 from sher3_diagnosis.judge.meaning import (
     OPEN,
     linear_in,
@@ -17,6 +19,7 @@ from sher3_diagnosis.judge.meaning import (
     without_empty,
     without_open_sizes,
 )
+from sher3_diagnosis.localise.gaps import localise
 from sher3_diagnosis.verdict import Cause, Interval, Parameter
 from toy import DIRECTION, Column, case, evidence_of
 
@@ -108,6 +111,16 @@ def test_what_has_no_size_may_stay_in_the_fit_without_a_name():
     assert kept.explained == (found.explained[1], found.explained[0])
     gone = without_empty(candidates, found, told)
     assert [t.effect for t in gone.fit.terms] == [DIRECTION]
+
+
+def test_a_gap_that_only_nameless_terms_explain_is_still_a_gap():
+    """The verdict was «no gap» where small errors of all parts, none of them sure, took most of one."""
+    evidence = evidence_of(case(6.0))
+    candidates = Candidates(evidence, [DIRECTION])
+    found = with_rivals(candidates, fit(evidence.data, [make_term(evidence.data, DIRECTION, "axis", {})]))
+    kept = without_empty(candidates, found, [cause(size=(-1.0, 2.0))], carried=True)
+    (item,) = items_of(Finding(evidence, localise(evidence), kept, [], {}))
+    assert item.index is None
 
 
 @pytest.mark.parametrize(

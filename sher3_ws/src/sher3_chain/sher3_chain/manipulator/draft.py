@@ -24,6 +24,8 @@ TORQUES = EFFORT - frozenset(("iq", "strom", "amps"))
 FORCES = ("N", "kN", "N*m", "mN*m")
 OF_JOINT = ("position", "velocity", "reference", "effort", "command", "load")
 """Signals of a joint that a draft keeps: an arm is judged by its forces."""
+GAINS = "state the servo's `command_law: {kind: force, position_gain: N m/rad, velocity_gain: N m s/rad}`"
+"""How a joint is judged whose force was not recorded."""
 OF_AXIS = re.compile(r": (driven by|mass is not|a position servo|undriven)")
 """Guesses on single axes that an arm has no use for."""
 
@@ -44,7 +46,7 @@ def draft_arm(path: Path, model: Path, rate: float | None = None, tables: Tables
     guesses: list[str] = []
     bodies, tables = read_bodies(model), longest(path) if tables is None else tables
     names = told_by_blocks(tables, rate, len(bodies.joints), guesses)
-    chain = drafted(path, renamed(names, tables) if names else tables, rate, guesses)
+    chain = drafted(path, renamed(names, tables) if names else tables, rate, guesses, held=True)
     return written(as_recorded(of_arm(chain, bodies, guesses), names), guesses)
 
 
@@ -80,6 +82,11 @@ def of_arm(
             if "actuator" in words and "qfrc" not in words and own.drive is not None and own.drive.gear != 1.0:
                 effort["factor"] = own.drive.gear
             drive_joint(joint, own, bool(words & OWN_EFFORT) if simulated is None else simulated, guesses)
+    told = [
+        j["name"] for j in joints if "reference" in j["signals"] and not {"effort", "command"} & j["signals"].keys()
+    ]
+    if told := [name for name in told if name not in drives]:
+        guesses.append(f"a reference and no force was recorded: {GAINS} of {', '.join(told)}")
     left = [joint for joint in slides if joint not in {j for j, _ in found.values()}]
     if left:
         guesses.append(f"joints that were not recorded stay at zero: {', '.join(left)}")

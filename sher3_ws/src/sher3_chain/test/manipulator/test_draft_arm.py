@@ -42,6 +42,21 @@ def test_matrices_are_the_joints_of_an_arm(tmp_path):
     assert found.text.count("column: torques") == found.text.count("column: velocities") == 2
 
 
+def test_a_joint_that_is_held_is_recorded_where_it_is(tmp_path):
+    (tmp_path / "lift.urdf").write_text(URDF)
+    held = np.column_stack([Q[:, 0], np.full(len(Q), 0.4)])
+    np.savez(tmp_path / "a.npz", time=TIME, q=held, tau=EFFORT)
+    found = draft_arm(tmp_path / "a.npz", tmp_path / "lift.urdf")
+    assert found.text.count("column: q") == 2 and not any("stay at zero" in guess for guess in found.guesses)
+
+
+def test_references_alone_ask_for_the_gains_of_the_servo(tmp_path):
+    (tmp_path / "lift.urdf").write_text(URDF)
+    np.savez(tmp_path / "a.npz", time=TIME, q=Q, q_des=Q + 0.01)
+    found = draft_arm(tmp_path / "a.npz", tmp_path / "lift.urdf")
+    assert any("position_gain" in guess and "lift, swing" in guess for guess in found.guesses)
+
+
 def test_a_current_has_an_unknown_gain(tmp_path):
     found = drafted(tmp_path, ["t", "lift_pos", "swing_pos", "lift_current", "swing_torque_Nm"])
     assert found.text.count("gain: unknown") == 1

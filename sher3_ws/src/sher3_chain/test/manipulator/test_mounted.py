@@ -60,3 +60,18 @@ def test_an_upright_arm_is_not_hung_elsewhere_even_where_its_efforts_are_turned(
 def test_gravity_that_is_stated_is_believed(path):
     found = verdict(path, (9.81, 0.0, 0.0), gravity=(0.0, 0.0, -9.81))
     assert not any("hangs otherwise" in note for note in found.notes)
+
+
+def test_what_a_brake_holds_at_rest_does_not_turn_gravity(path):
+    """Between motions the arm rests where it is, and its drives feel what is as good as a weight on a wall."""
+    rate, moves, stays = 100.0, 50, 200
+    run, t = record(rate, DRY), np.arange(3000)
+    at = np.concatenate([np.r_[t[i : i + moves], np.full(stays, i + moves - 1)] for i in t[::moves]])
+    rests = np.tile(np.arange(moves + stays) >= moves, len(t) // moves)
+    held = weights(motion(at / rate)[0], (9.81, 0.0, 0.0))
+    signals = {}
+    for i, name in enumerate(NAMES):
+        position, effort = (run.signals[name][x][at] for x in ("position", "effort"))
+        signals[name] = {"position": position, "effort": np.where(rests, held[:, i], effort)}
+    found = diagnose(machine(path, rate), [replace(run, signals=signals)]).verdict
+    assert not any("hangs otherwise" in note for note in found.notes)

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -28,12 +29,14 @@ class Fit:
     Attributes:
         coefficients: (p,) of all terms in order; `loro_coefficients`: (runs, p), each without its run.
         loss: per run and channel, sum of squares under the coefficients of the other runs (held out).
+        cancelled: the largest of what a term adds by itself over what all terms of its channels add together, rms.
     """
 
     terms: tuple[Term, ...]
     coefficients: Array
     loro_coefficients: Array
     loss: dict[tuple[int, Channel], float]
+    cancelled: float
 
     def _columns(self, index: int) -> slice:
         start = sum(t.width for t in self.terms[:index])
@@ -70,6 +73,7 @@ class _Part:
     coefficients: Array
     held_out: Array
     loss: dict[tuple[int, Channel], float]
+    cancelled: float
 
 
 def fit(data: Whitened, terms: Sequence[Term]) -> Fit:
@@ -77,13 +81,14 @@ def fit(data: Whitened, terms: Sequence[Term]) -> Fit:
     runs = len(data.target)
     starts = np.cumsum([0, *(t.width for t in terms)])
     coefficients, held_out = np.zeros(int(starts[-1])), np.zeros((runs, int(starts[-1])))
-    loss = dict(data.null_loss)
+    loss, cancelled = dict(data.null_loss), 0.0
     for members in connected(terms):
         part = _part(data, tuple(terms[i] for i in members))
         columns = np.concatenate([np.arange(starts[i], starts[i + 1]) for i in members]).astype(int)
         coefficients[columns], held_out[:, columns] = part.coefficients, part.held_out
         loss.update(part.loss)
-    return Fit(tuple(terms), coefficients, held_out, loss)
+        cancelled = max(cancelled, part.cancelled)
+    return Fit(tuple(terms), coefficients, held_out, loss, cancelled)
 
 
 def connected(terms: Sequence[Term]) -> list[list[int]]:
@@ -127,7 +132,15 @@ def _fit_part(data: Whitened, terms: tuple[Term, ...]) -> _Part:
     for c, (a, b, energy) in pieces.items():
         held = energy - 2.0 * np.einsum("rp,rp->r", held_out, b) + np.einsum("rp,rpq,rq->r", held_out, a, held_out)
         loss |= {(r, c): max(0.0, float(held[r])) for r in range(runs) if (r, c) in data.null_loss}
-    return _Part(terms, solved[0], held_out, loss)
+    return _Part(terms, solved[0], held_out, loss, _cancelled(terms, solved[0], total))
+
+
+def _cancelled(terms: Sequence[Term], coefficients: Array, normal: Array) -> float:
+    """Return the largest of what a term adds over what all of them add, rms, from their normal matrix (p, p)."""
+    ends = pairwise(np.cumsum([0, *(t.width for t in terms)]))
+    own = max(float(coefficients[a:b] @ normal[a:b, a:b] @ coefficients[a:b]) for a, b in ends)
+    whole = float(coefficients @ normal @ coefficients)
+    return float(np.sqrt(max(own, 0.0) / max(whole, np.finfo(float).tiny)))
 
 
 def _with_deviations(held_out: Array, normal: Array, right: Array, limit: Array) -> Array:

@@ -29,6 +29,7 @@ def items_of(finding: Finding) -> list[Item]:
 def gaps_of(finding: Finding, taken: set[Channel]) -> list[Item]:
     """Return the significant gaps that no cause explains but for less than half.
 
+    What is fitted without a name, since its size may be zero, explains nothing where nothing else does.
     A gap echoes in another gap only at the same place, and only from the larger to the smaller one: every residual is
     predicted from its stage's measured input, and the tip's from the encoders at the loads. The tip has one residual,
     split in free and loaded samples. A part of less than `LEAST_SHARE` of the other part is what the other part's cause
@@ -38,7 +39,8 @@ def gaps_of(finding: Finding, taken: set[Channel]) -> list[Item]:
     out = []
     for channel, gap in gaps.items():
         null = max(evidence.excess(channel), 1.0)
-        if channel in taken or evidence.excess(channel, finding.attribution.fit) < (1.0 - COVERED) * null:
+        left = evidence.excess(channel, finding.attribution.fit) if finding.attribution.causes else null
+        if channel in taken or left < (1.0 - COVERED) * null:
             continue
         others = [g.power for c, g in gaps.items() if c != channel and c.actuator == channel.actuator]
         beside = math.log(max(others) / gap.power) if others else 0.0

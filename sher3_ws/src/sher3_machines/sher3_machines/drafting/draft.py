@@ -77,8 +77,8 @@ def written(data: Mapping[str, Any], guesses: list[str]) -> Draft:
     return Draft(head + dump_yaml(data), guesses)
 
 
-def drafted(path: Path, tables: Tables, rate: float | None, guesses: list[str]) -> dict[str, Any]:
-    """Return a description of a chain of axes as plain data; raises MachineError."""
+def drafted(path: Path, tables: Tables, rate: float | None, guesses: list[str], held: bool = False) -> dict[str, Any]:
+    """Return a description of a chain of axes as plain data, with `held` ones where asked; raises MachineError."""
     clock = None if rate else clock_of(tables, guesses)
     if clock is None:
         time: dict[str, Any] = {"rate": rate}
@@ -88,7 +88,7 @@ def drafted(path: Path, tables: Tables, rate: float | None, guesses: list[str]) 
         time = {"column": clock if alone else bare(clock)}
         time["unit"] = time_unit(clock, tables[clock], guesses)
     period = 1.0 / rate if rate else period_of(tables[str(clock)]) * TIME_UNITS[time["unit"]]
-    roles = placed(tables, clock, guesses)
+    roles = placed(tables, clock, guesses, held)
     groups, left = together(roles)
     known = {name for name, _ in roles}
     left += [n for n, x in tables.items() if n not in known and n != clock and moves(x)]

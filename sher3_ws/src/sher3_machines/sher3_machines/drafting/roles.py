@@ -35,6 +35,8 @@ TOLD = {"command", "commanded", "cmd", "action"}
 """Words for what a drive is told, whether a place or a force."""
 ASKED_FOR = ("reference", ASKED_SPEED)
 """Signals that may stay as they are all along."""
+LAST_NUMBER = re.compile(r"(?P<stem>.*?)(?P<number>\d+)")
+"""Name of an axis that ends in a number."""
 EVERY = "*"
 """Axis of a signal that all axes share: one speed is asked of both wheels."""
 
@@ -42,10 +44,38 @@ Place = tuple[str, int | None]
 """A column, and the entry of it where each sample is a list."""
 
 
-def placed(tables: Tables, clock: str | None, guesses: list[str]) -> dict[Place, tuple[str, str]]:
-    """Return signal and axis of every column whose name, or what stands beside it, says one."""
-    living = _living(_named(tables, clock), tables, guesses)
+def placed(tables: Tables, clock: str | None, guesses: list[str], held: bool = False) -> dict[Place, tuple[str, str]]:
+    """Return signal and axis of every column whose name, or what stands beside it, says one.
+
+    Args:
+        tables: of the file.
+        clock: column of the time; None: there is none.
+        guesses: so far.
+        held: whether a place that never changes counts: a joint that is held still carries the others.
+    """
+    living = _living(counted_alike(_named(tables, clock)), tables, guesses, held)
     return with_loads(with_speeds(with_drive(with_output(living, tables))))
+
+
+def counted_alike(placed: Mapping[Place, tuple[str, str]]) -> dict[Place, tuple[str, str]]:
+    """Return the signals with families of columns that count from the same number: `tau1` goes with `q0`.
+
+    A family is what differs in its last number alone, `q0` to `q5`. One of as many members in a row as the positions
+    have, but from another number on, is counted as these are: of two zeros that people count from, both are meant.
+    """
+    families: dict[tuple[str, str], dict[int, Place]] = {}
+    for place, (signal, axis) in placed.items():
+        if match := LAST_NUMBER.fullmatch(axis):
+            families.setdefault((signal, match["stem"]), {})[int(match["number"])] = place
+    rows = {key: family for key, family in families.items() if max(family) - min(family) == len(family) - 1 > 0}
+    bases = {stem: family for (signal, stem), family in rows.items() if signal == "position"}
+    out = dict(placed)
+    for (signal, stem), family in rows.items():
+        base = bases.get(stem, next(iter(bases.values())) if len(bases) == 1 else {})
+        if len(base) == len(family) and min(base) != min(family):
+            shift = min(base) - min(family)
+            out |= {place: (signal, f"{stem}{number + shift}") for number, place in family.items()}
+    return out
 
 
 def _named(tables: Tables, clock: str | None) -> dict[Place, tuple[str, str]]:
@@ -66,13 +96,14 @@ def _named(tables: Tables, clock: str | None) -> dict[Place, tuple[str, str]]:
 
 
 def _living(
-    placed: Mapping[Place, tuple[str, str]], tables: Tables, guesses: list[str]
+    placed: Mapping[Place, tuple[str, str]], tables: Tables, guesses: list[str], held: bool
 ) -> dict[Place, tuple[str, str]]:
     """Return the signals without what was not connected: a reading that never changes, beside places that do.
 
     What an axis is asked for may stay.
     """
-    dead = [p for p, (signal, _) in placed.items() if signal not in ASKED_FOR and not moves(values_of(p, tables))]
+    stays = (*ASKED_FOR, "position") if held else ASKED_FOR
+    dead = [p for p, (signal, _) in placed.items() if signal not in stays and not moves(values_of(p, tables))]
     alive = {p: what for p, what in placed.items() if p not in dead}
     if not any(signal in ("position", "load", "velocity") for signal, _ in alive.values()):
         return dict(placed)

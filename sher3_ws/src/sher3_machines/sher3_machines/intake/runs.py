@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from sher3_machines.intake.readers.lerobot import is_data_set, read_data_set
-from sher3_machines.intake.tables import Tables, read_tables
+from sher3_machines.intake.tables import UNNAMED, Tables, read_tables
 
 EPISODES = (
     "demo",
@@ -39,6 +39,10 @@ EPISODES = (
 NUMBERED = re.compile(rf"(?i:(?P<group>(?:[^/]+/)*?(?:{'|'.join(EPISODES)})[ _-]?\d+)/(?P<column>.+))")
 """A column of a group that is numbered as runs are: `data/demo_12/obs/q`."""
 
+FILE = re.compile(r"(?P<group>[^/]+)/(?P<column>.+)")
+"""A column of a file of a folder."""
+DIGITS = re.compile(r"\d+")
+
 
 def runs_of(data: Sequence[Path]) -> dict[str, Tables]:
     """Return the tables of every run by its name: that of its file or episode, numbered where two are alike.
@@ -53,16 +57,18 @@ def runs_of(data: Sequence[Path]) -> dict[str, Tables]:
     return {name: tables for name, (_, tables) in zip(names, found, strict=True)}
 
 
-def episodes_in(tables: Tables) -> dict[str, Tables]:
+def episodes_in(tables: Tables, named: re.Pattern[str] = NUMBERED) -> dict[str, Tables]:
     """Return the runs of a file or folder by name: groups, or files, numbered as runs are with the same columns.
 
     What stands beside them belongs to each of them. Empty where there are no two such groups.
     """
     parts: dict[str, Tables] = defaultdict(dict)
     for name, x in tables.items():
-        if match := NUMBERED.fullmatch(name):
+        if match := named.fullmatch(name):
             parts[match["group"]][match["column"]] = x
     if len(parts) < 2 or len({tuple(sorted(part)) for part in parts.values()}) > 1:
+        return {}
+    if named is FILE and (len({DIGITS.sub("#", group) for group in parts}) > 1 or not all(map(_whole, parts.values()))):
         return {}
     beside = {name: x for name, x in tables.items() if not name.startswith(tuple(f"{group}/" for group in parts))}
     return {group.replace("/", "_"): {**beside, **part} for group, part in parts.items()}
@@ -72,7 +78,17 @@ def _runs(path: Path) -> Mapping[str, Tables]:
     if is_data_set(path):
         return {name: dict(tables) for name, tables in read_data_set(path).episodes.items()}
     tables = read_tables(path)
-    return episodes_in(tables) or {path.resolve().name if path.is_dir() else path.stem: tables}
+    files = episodes_in(tables, FILE) if path.is_dir() else {}
+    return episodes_in(tables) or files or {path.resolve().name if path.is_dir() else path.stem: tables}
+
+
+def _whole(tables: Tables) -> bool:
+    """Return whether a file holds all joints of a machine, a matrix or columns that differ in a number: it is a run.
+
+    Files that are numbered by joints, sensors or channels hold one each.
+    """
+    alike = [DIGITS.sub("#", name) for name in tables if not UNNAMED.fullmatch(name)]
+    return any(x.ndim == 2 for x in tables.values()) or len(set(alike)) < len(alike)
 
 
 def longest(path: Path) -> Tables:

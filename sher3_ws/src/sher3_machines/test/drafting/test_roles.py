@@ -33,3 +33,10 @@ def test_a_friction_that_alone_was_measured_is_an_effort():
 def test_a_torque_that_is_applied_beside_a_measured_one_comes_from_outside(beside):
     (found,) = signals_of("angle [deg]", "Applied Torque [Nm]", *beside).values()
     assert found["applied"] == "Applied Torque [Nm]"
+
+
+def test_families_that_count_from_zero_and_from_one_are_the_same_joints():
+    """`tau1` is the effort of `q0`; a family of another size is left as it counts."""
+    found = signals_of("q0", "q1", "q2", "tau1", "tau2", "tau3")
+    assert {axis: x["effort"] for axis, x in found.items()} == {"0": "tau1", "1": "tau2", "2": "tau3"}
+    assert signals_of("q0", "q1", "q2", "tau1", "tau2")["1"]["effort"] == "tau1"

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import yaml
 from sher3_machines import MachineError, described, import_case, is_machine_case, load_description, open_case
+from sher3_machines.intake.runs import runs_of
 
 AXIS = {
     "name": "slide",
@@ -167,3 +168,14 @@ def test_files_of_a_folder_that_are_numbered_as_runs_are_a_run_each(tmp_path):
         np.savez(folder / f"{name}.npz", **record())
     import_case([folder], description, tmp_path / "case")
     assert [run.name for run in open_case(tmp_path / "case")[1]] == ["run 2", "run1"]
+
+
+def test_numbered_files_that_hold_all_joints_are_runs_and_those_of_single_joints_are_not(tmp_path):
+    """`sweep_of_joint_3.npz` has a matrix of all joints; `joint_3.npz` with one position is a part of a run."""
+    whole, single = tmp_path / "whole", tmp_path / "single"
+    for folder, position in ((whole, np.zeros((50, 3))), (single, np.zeros(50))):
+        folder.mkdir()
+        for i in (1, 3):
+            np.savez(folder / f"sweep_of_joint_{i}.npz", time=np.arange(50.0), q=position)
+    assert list(runs_of([whole])) == ["sweep_of_joint_1", "sweep_of_joint_3"]
+    assert list(runs_of([single])) == ["single"]

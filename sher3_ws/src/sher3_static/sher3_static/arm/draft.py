@@ -21,6 +21,8 @@ from sher3_machines.intake.spelling import bare
 from sher3_machines.intake.tables import Tables
 from sher3_machines.urdf import read_urdf
 
+from sher3_static.arm.urdf import SLIDES, TURNS
+
 PLACE = re.compile(r"(?P<before>.*?)(?P<axis>[xyz])(?P<behind>[_ ]?\d*)", re.IGNORECASE)
 """Name of one of three coordinates: `x1`, `tip_y`, `pos z`."""
 NOISE = 1e-4
@@ -29,8 +31,6 @@ FEWEST = 2
 """Joints that must be named, so that a table is one of postures."""
 NUMBERED = re.compile(r"(?P<stem>.*?[a-z])[_ ]?(?P<number>\d+)", re.IGNORECASE)
 """Name of one of several joints: `q1`, `theta_3`, `joint 6`."""
-MOVES = ("revolute", "continuous", "prismatic")
-"""Types of joint that a posture has a value of."""
 
 
 def draft_postures(path: Path, tables: Tables, model: Path) -> Draft | None:
@@ -58,7 +58,10 @@ def draft_postures(path: Path, tables: Tables, model: Path) -> Draft | None:
         f"noise of {NOISE:g} m is a placeholder: state that of the instrument",
     ]
     data: dict[str, Any] = {"kind": "arm", "name": re.sub(r"\W+", "_", path.stem)}
-    data["joint_positions"] = [_column(name, columns, False) for name in own]
+    slides = {joint.get("name") for joint in root.iter("joint") if joint.get("type") == SLIDES}
+    data["joint_positions"] = [
+        _column(n, columns, joint in slides) for n, (joint, _, _) in zip(own, chain, strict=True)
+    ]
     data["positions"] = [_column(name, columns, True) for name in point]
     data |= {"noise": NOISE, "urdf": str(model.resolve()), "base_link": chain[0][1], "tip_link": chain[-1][2]}
     rest = [name for name in tables if name not in (*own, *point)]
@@ -89,7 +92,7 @@ def moving(root: ElementTree.Element) -> list[str]:
     """Return the names of the joints of a URDF that move, from the root outwards."""
     above = {child: (joint, parent) for joint, parent, child in joints_of(root)}
     kinds = {joint.get("name", ""): joint.get("type", "") for joint in root.iter("joint")}
-    found = [(_depth(child, above), joint) for child, (joint, _) in above.items() if kinds[joint] in MOVES]
+    found = [(_depth(child, above), joint) for child, (joint, _) in above.items() if kinds[joint] in (*TURNS, SLIDES)]
     return [joint for _, joint in sorted(found, key=lambda each: each[0])]
 
 

@@ -115,8 +115,8 @@ class ArmKind(TableKind[ArmDescription]):
             run=rows["run"],
             unit="m",
             pages=self.library(),
-            places={"joint": names},
-            rotary=frozenset(names),
+            places={"joint": known.arm.turning},
+            rotary=frozenset(known.arm.turning),
             free=set_up(view, "told"),
             zeros=set_up(view, "moved"),
         )

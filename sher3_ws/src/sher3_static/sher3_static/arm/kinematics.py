@@ -14,19 +14,26 @@ from sher3_static.arm.description import Joint
 
 @dataclass(frozen=True)
 class Arm:
-    """Joint i turns by q about `axes[i]` after the fixed transform `fixed[i]`; then `tip`.
+    """Joint i turns by q about `axes[i]`, or slides along it, after the fixed transform `fixed[i]`; then `tip`.
 
     Attributes:
         names: of the k joints.
         fixed: (k, 4, 4).
         axes: (k, 3) unit vectors in the joints' own frames.
         tip: (4, 4).
+        slides: names of those that slide; they move the arm, and errors are looked for in those that turn.
     """
 
     names: tuple[str, ...]
     fixed: Array
     axes: Array
     tip: Array
+    slides: tuple[str, ...] = ()
+
+    @property
+    def turning(self) -> tuple[str, ...]:
+        """The joints that turn."""
+        return tuple(name for name in self.names if name not in self.slides)
 
 
 @dataclass(frozen=True)
@@ -71,14 +78,17 @@ def transform(position: Array | list[float] | None = None, rotation: Array | Non
 
 
 def postures(arm: Arm, q: Array) -> Postures:
-    """Return the arm along joint positions (n, k), rad."""
+    """Return the arm along joint positions (n, k), rad or m."""
     n, k = q.shape
     frames, axes = np.empty((n, k, 4, 4)), np.empty((n, k, 3))
     pose = np.tile(np.eye(4), (n, 1, 1))
     for i in range(k):
         pose = pose @ arm.fixed[i]
         frames[:, i], axes[:, i] = pose, pose[:, :3, :3] @ arm.axes[i]
-        turn = np.tile(np.eye(4), (n, 1, 1))
-        turn[:, :3, :3] = Rotation.from_rotvec(q[:, [i]] * arm.axes[i]).as_matrix()
-        pose = pose @ turn
+        travel, moved = q[:, [i]] * arm.axes[i], np.tile(np.eye(4), (n, 1, 1))
+        if arm.names[i] in arm.slides:
+            moved[:, :3, 3] = travel
+        else:
+            moved[:, :3, :3] = Rotation.from_rotvec(travel).as_matrix()
+        pose = pose @ moved
     return Postures(pose @ arm.tip, frames, axes)

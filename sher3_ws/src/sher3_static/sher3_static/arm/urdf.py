@@ -1,4 +1,4 @@
-"""The chain of revolute joints between two links of a URDF file."""
+"""The chain of joints between two links of a URDF file."""
 
 from __future__ import annotations
 
@@ -12,33 +12,33 @@ from sher3_machines.urdf import Urdf, read_urdf
 
 from sher3_static.arm.kinematics import Arm, transform
 
-SLIDES = (
-    "take postures in which it stayed, and begin the chain behind it (`base_link`) or end it before it (`tip_link`)"
-)
-"""What helps where a joint of the chain slides: the errors that are looked for are those of joints that turn."""
+TURNS, SLIDES = ("revolute", "continuous"), "prismatic"
+"""Types of joint that a posture has a value of."""
 
 
 def arm_from_urdf(path: Path, base: str, tip: str) -> Arm:
     """Read the chain between two links.
 
     Raises:
-        MachineError: the file cannot be read, has no such chain, or a joint of it is neither revolute nor fixed; an
+        MachineError: the file cannot be read, has no such chain, or a joint neither turns nor slides nor is fixed; an
             attribute is missing or does not hold three numbers.
     """
     urdf = read_urdf(path)
-    names, fixed, axes, pending = [], [], [], np.eye(4)
+    names, slides, fixed, axes, pending = [], [], [], [], np.eye(4)
     for joint in _chain(urdf, base, tip):
         turn, place = urdf.pose(joint)
         pending = pending @ transform(place, turn)
         kind, name = urdf.word(joint, "type"), urdf.word(joint, "name")
-        if kind in ("revolute", "continuous"):
+        if kind in (*TURNS, SLIDES):
             names.append(name)
+            slides += [name] if kind == SLIDES else []
             fixed.append(pending)
             axes.append(urdf.axis(joint))
             pending = np.eye(4)
         elif kind != "fixed":
-            raise MachineError(f"{path}: joint {name} is not revolute", value=kind, remedy=SLIDES)
-    return Arm(tuple(names), np.array(fixed), np.array(axes), pending)
+            remedy = "begin the chain behind it (`base_link`) or end it before it (`tip_link`)"
+            raise MachineError(f"{path}: joint {name} neither turns nor slides", value=kind, remedy=remedy)
+    return Arm(tuple(names), np.array(fixed), np.array(axes), pending, tuple(slides))
 
 
 def _chain(urdf: Urdf, base: str, tip: str) -> Sequence[Element]:

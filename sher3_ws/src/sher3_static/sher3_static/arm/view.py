@@ -18,7 +18,7 @@ class ArmView(Still):
 
     Attributes:
         arm: nominal.
-        joints: (n, k) joint positions, rad.
+        joints: (n, k) joint positions, rad or m.
         postures: nominal, in the base frame.
         base: (4, 4) Z, the arm's base in the measuring frame.
         body: (4, 4) X, the measured body on the flange.
@@ -64,5 +64,5 @@ class ArmView(Still):
         return self.sight.seen(change[:, :, None], self.pose)[:, :, 0]
 
     def inputs(self, actuator: str) -> Array:
-        """Return the joint positions (n, k), rad."""
+        """Return the joint positions (n, k), rad or m."""
         return self.joints

@@ -59,9 +59,18 @@ def test_a_chain_that_is_not_there_is_named(urdf, tmp_path):
         arm_from_urdf(urdf, "base", "hand")
     with pytest.raises(MachineError, match="no chain from 'tip' to 'base'"):
         arm_from_urdf(urdf, "tip", "base")
+    (tmp_path / "float.urdf").write_text(URDF.format(kind="floating"))
+    with pytest.raises(MachineError, match="j2 neither turns nor slides"):
+        arm_from_urdf(tmp_path / "float.urdf", "base", "tip")
+
+
+def test_a_joint_that_slides_moves_the_tip_along_its_axis(tmp_path):
+    """Its axis lies along the base's y: 0.2 m of travel add to 0.1 m of the tip; only the other one may be wrong."""
     (tmp_path / "slide.urdf").write_text(URDF.format(kind="prismatic"))
-    with pytest.raises(MachineError, match="j2 is not revolute"):
-        arm_from_urdf(tmp_path / "slide.urdf", "base", "tip")
+    arm = arm_from_urdf(tmp_path / "slide.urdf", "base", "tip")
+    (tip,) = postures(arm, np.array([[0.0, 0.2]])).tip
+    np.testing.assert_allclose(tip[:3, 3], [0.25, 0.3, 0.3], atol=1e-12)
+    assert arm.turning == ("j1",)
 
 
 def test_a_urdf_that_goes_round_in_a_circle_is_refused(tmp_path):

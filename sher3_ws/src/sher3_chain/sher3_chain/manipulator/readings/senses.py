@@ -14,7 +14,7 @@ from dataclasses import replace
 from itertools import combinations
 
 import numpy as np
-from sher3_diagnosis.channel import Array
+from sher3_diagnosis.channel import Array, Mask
 
 from sher3_chain.joint.record import AxesRun
 from sher3_chain.manipulator.description import ManipulatorDescription
@@ -47,14 +47,17 @@ def against_model(
     stated = [isinstance(joint.gain, float) for joint in described.joints]
     if described.coupling is not None or described.inertias != "nominal" or not rows:
         return ()
-    motion = [thinned(view, len(views)) for view in views]
-    q, v, a, effort = (np.concatenate(x) for x in zip(*motion, strict=True))
-    if not effort[:, rows].any() or not v.any():
+    q, v, a, effort, told = thinned(views)
+    rows = [i for i in rows if effort[told[:, i], i].any()]
+    if not rows or not v.any():
         return ()
 
     def left(senses: Array) -> float:
         needed = model.needed(senses * q, senses * v, senses * a)
-        return sum(_left(needed[:, i], senses[i] * v[:, i], senses[i] * effort[:, i], stated[i]) for i in rows)
+        return sum(
+            _left(needed[ok, i], senses[i] * v[ok, i], senses[i] * effort[ok, i], stated[i])
+            for i, ok in zip(rows, told[:, rows].T, strict=True)
+        )
 
     k = len(described.joints)
     senses, best = np.ones(k), left(np.ones(k))
@@ -77,11 +80,18 @@ def turned(run: AxesRun, joints: Collection[str]) -> AxesRun:
     return replace(run, signals=signals)
 
 
-def thinned(view: MotionView, views: int) -> tuple[Array, Array, Array, Array]:
-    """Return position, velocity, acceleration and effort (n, k) at some samples of the inner part of a record."""
-    inner = np.flatnonzero(view.run.inner)
-    rows = inner[:: max(1, len(inner) * views // POSTURES)]
-    return view.position[rows], view.velocity[rows], view.acceleration[rows], view.effort[rows]
+def thinned(views: Sequence[MotionView]) -> tuple[Array, Array, Array, Array, Mask]:
+    """Return position, velocity, acceleration and effort at some samples of the inner parts of all records, and where
+    the effort of a joint says something, (n, k) each: at rest friction and brakes take any value.
+    """
+    parts = []
+    for view in views:
+        inner = np.flatnonzero(view.run.inner)
+        at = inner[:: max(1, len(inner) * len(views) // POSTURES)]
+        told = np.column_stack([view.in_motion(row)[at] for row in range(len(view.joints))])
+        parts.append((view.position[at], view.velocity[at], view.acceleration[at], view.effort[at], told))
+    q, v, a, effort, told = (np.concatenate(x) for x in zip(*parts, strict=True))
+    return q, v, a, effort, told
 
 
 def _left(needed: Array, v: Array, effort: Array, stated: bool) -> float:
