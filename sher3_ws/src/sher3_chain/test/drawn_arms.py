@@ -8,6 +8,8 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
+from sher3_chain.manipulator.bodies import bodies_of
+from sher3_chain.manipulator.identification.inertias import LINK, ROTOR
 
 NAMES = ("turn", "shoulder", "elbow", "wrist")
 AXES = ("0 0 1", "0 1 0", "0 1 0", "0 1 0")
@@ -68,6 +70,29 @@ def _drive(rng: np.random.Generator, i: int, servo: bool) -> str:
         return f'<motor joint="{NAMES[i]}" gear="{gear}"/>'
     kp = stiff / gear**2
     return f'<position joint="{NAMES[i]}" kp="{kp:.4g}" kv="{rng.uniform(0.03, 0.06) * kp:.4g}" gear="{gear}"/>'
+
+
+def rough(rng: np.random.Generator, joints: int = 3) -> tuple[str, mujoco.MjSpec]:
+    """Return the MJCF of a drawn arm of servos, and one with other links and rotors and 0.8 N m at its last joint."""
+    xml = drawn_xml(rng, servo=True, joints=joints).replace('gravcomp="1"', "")
+    spec = mujoco.MjSpec.from_string(xml)
+    for body in spec.bodies[1:]:
+        body.geoms[0].mass *= rng.uniform(0.6, 1.8)
+        body.joints[0].armature *= rng.uniform(1.0, 3.0)
+    spec.joints[-1].frictionloss += 0.8
+    return xml, spec
+
+
+def beyond(xml: str, spec: mujoco.MjSpec) -> dict[tuple[str, str], float]:
+    """Return (place, constant) -> what an arm has of inertia beyond its model, by the names of a verdict."""
+    model, real = (bodies_of(text, "arm").tree for text in (xml, spec.to_xml()))
+    links = {
+        (a.body, name): float(x)
+        for a, b in zip(model.links, real.links, strict=True)
+        for name, x in zip(LINK, b.own - a.own, strict=True)
+    }
+    both = zip(model.names, model.links, real.links, strict=True)
+    return links | {(name, ROTOR): b.rotor - a.rotor for name, a, b in both}
 
 
 def asked(rng: np.random.Generator, stamps: NDArray[np.float64], k: int) -> NDArray[np.float64]:

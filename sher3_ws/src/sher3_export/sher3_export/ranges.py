@@ -29,7 +29,7 @@ class Ranges:
         shares: probability of each world; empty: each is as probable as the others.
         remainder: joint -> force that the causes leave, standard deviation over a quarter of a second, N or N m; empty
             where it was not measured.
-        identified: inertias, the same in all worlds.
+        identified: inertias beyond the model's, alike in all worlds.
         width: share of the 90 % intervals that the recorded motion needs; 1 where it was not measured.
         motors: motor whose causes these are, by the joint of its name -> joint -> its travel per travel of the joint.
     """
@@ -43,10 +43,15 @@ class Ranges:
 
     def draw(self, rng: np.random.Generator) -> list[Cause]:
         """Return the causes of one world with parameters drawn from their intervals."""
-        world, w = self.worlds[int(rng.choice(len(self.worlds), p=self.probabilities))], self.width
-        return [
-            c.model_copy(update={"parameters": {n: drawn(p, rng, w) for n, p in c.parameters.items()}}) for c in world
-        ]
+        world = self.worlds[int(rng.choice(len(self.worlds), p=self.probabilities))]
+        return [c.model_copy(update={"parameters": self._drawn(c.parameters, rng)}) for c in world]
+
+    def draw_inertias(self, rng: np.random.Generator) -> list[Identified]:
+        """Return the identified inertias, those with an interval drawn from it."""
+        return [x.model_copy(update={"constants": self._drawn(x.constants, rng)}) for x in self.identified]
+
+    def _drawn(self, each: Mapping[str, Parameter], rng: np.random.Generator) -> dict[str, Parameter]:
+        return {name: drawn(p, rng, self.width) for name, p in each.items()}
 
     @property
     def probabilities(self) -> list[float]:
@@ -64,7 +69,9 @@ class Ranges:
             "one_of": worlds,
             "probability": [round(p, 4) for p in self.probabilities],
             "remainder": {j: float(s) for j, s in self.remainder.items()},
-        } | ({"motors": {motor: dict(travel) for motor, travel in self.motors.items()}} if self.motors else {})
+            "motors": {motor: dict(travel) for motor, travel in self.motors.items()},
+            "identified": [{"place": x.actuator, **_ranges(x.constants, self.width)} for x in self.identified],
+        }
         whose = "motors: a cause at one of them is the motor's, by its own travel per travel of each joint."
         remarks = (
             "One of these sets of causes is at work, with its probability; values add to the nominal ones.",
@@ -72,7 +79,8 @@ class Ranges:
             "remainder: force that the causes leave, standard deviation, constant for 0.25 s at a time.",
             *([whose] if self.motors else []),
         )
-        return "".join(f"# {line}\n" for line in remarks) + dump_yaml(data)
+        said = {name: x for name, x in data.items() if x or name not in ("motors", "identified")}
+        return "".join(f"# {line}\n" for line in remarks) + dump_yaml(said)
 
 
 def worlds_of(verdict: Verdict, others: Sequence[Verdict] = ()) -> list[Sequence[Cause]]:
@@ -131,12 +139,16 @@ def drawn(p: Parameter, rng: np.random.Generator, width: float = 1.0) -> Paramet
 
 def _entry(cause: Cause, width: float) -> dict[str, object]:
     known = constants_of(cause)
-    ranges = {
-        known.get(name, name): {
+    named = {known.get(name, name): p for name, p in cause.parameters.items()}
+    return {"effect": cause.effect, "joint": cause.actuator, **_ranges(named, width)}
+
+
+def _ranges(each: Mapping[str, Parameter], width: float) -> dict[str, object]:
+    return {
+        name: {
             "range": [float(p.value + width * (end - p.value)) for end in interval(p)],
             "value": float(p.value),
             "unit": p.unit,
         }
-        for name, p in cause.parameters.items()
+        for name, p in each.items()
     }
-    return {"effect": cause.effect, "joint": cause.actuator, **ranges}

@@ -160,7 +160,8 @@ class Manipulator(Chain[ArmMotionEvidence]):
             where = "the runs of the reference" if self.described.conditions else "the data"
             notes.append(
                 f"inertias identified from {where}: drive gain, weight and payload are in them, cannot be told apart "
-                "and are not looked for; `sher3 gap export` writes them into a model"
+                "and are not looked for; `sher3 gap export` writes them into a model; those that the motion tells by "
+                "themselves have an interval"
             )
         notes += [*stop_notes(evidence), *timing_notes(finding.causes)]
         notes += change_notes(evidence, finding.attribution, self.parted(evidence))

@@ -182,7 +182,7 @@ def inside(windows: Windows, scatter: Scatter) -> Mask:
 
 def drawn_model(bench: Bench, ranges: Ranges, joints: Mapping[str, str], rng: np.random.Generator) -> Engine:
     """Return a compiled model with drawn causes."""
-    drawn = put(ranges.draw(rng), "mjcf", copied(bench.root), joints, ranges.motors, ranges.identified)
+    drawn = put(ranges.draw(rng), "mjcf", copied(bench.root), joints, ranges.motors, ranges.draw_inertias(rng))
     return bench.compiled(drawn[1](["drawn"]))
 
 

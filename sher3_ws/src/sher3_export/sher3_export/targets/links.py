@@ -23,7 +23,7 @@ MOVED = 1e-6
 NAMES = ("ixx", "ixy", "iyy", "ixz", "iyz", "izz")
 ALIKE = (
     "Motion tells sums over links. Those of single links are of the bodies that can exist, move alike and are next to "
-    "the model's: no number of one of them is known by itself."
+    "the model's: no number of one of them is known by itself, but for identified ones that have an interval."
 )
 
 

@@ -101,7 +101,8 @@ def _ranges(given: Any, check: Path | None, model: Path | None, names: dict[str,
     from sher3_export.writing import travels_of
 
     if check is None:
-        return {"text": Ranges(worlds_of(given), motors=travels_of(given, motors)).text(), "coverage": {}}
+        ranges = Ranges(worlds_of(given), identified=given.identified, motors=travels_of(given, motors))
+        return {"text": ranges.text(), "coverage": {}}
     found = covered(given, check, model, names, motors)
     return {"text": found.ranges.text(), "coverage": dict(found.coverage)}
 
