@@ -7,6 +7,7 @@ a `TimeSeries` `times`, `data` and `signal_mapping`.
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
+from dataclasses import replace
 from importlib import import_module
 from typing import Any, NamedTuple
 
@@ -24,6 +25,8 @@ FORCES = ("JOINTACTFRC", "ACTUATORFRC")
 
 HAIR = 1e-9
 """Seconds by which stamps that are meant to be the same may differ."""
+ROLLED = "readings begin a step after the controls: taken as those of a rollout, read a step before their stamps"
+"""Guess."""
 
 
 def from_sysid(
@@ -36,7 +39,8 @@ def from_sysid(
 
     Positions are those of the sensors `jointpos` or of the state, efforts those of `jointactuatorfrc` or
     `actuatorfrc`; without these they follow from the controls by the laws of the model's actuators. Controls hold until
-    the next one.
+    the next one. Readings whose first stamp is a step after the first control are those of a rollout, which stamps what
+    is read at the beginning of a step with its end.
 
     Args:
         sequences: with `spec`, `control` and `sensordata`.
@@ -58,32 +62,42 @@ def from_sysid(
         raise InputError("no joint's position was measured", remedy="add sensors jointpos, or the state, to sensordata")
     columns = [list(x) for x in zip(*((r.time, r.control, r.position, r.effort) for r in runs), strict=True)]
     effort = None if any(x is None for x in columns[3]) else columns[3]
-    return diagnose(
+    answer = diagnose(
         sequences.spec, columns[0], columns[1], columns[2], effort, joints=joints, tags=tags, without=without
     )
+    guesses = [*answer.guessed, *([ROLLED] if any(r.rolled for r in runs) else [])]
+    return replace(answer, case=replace(answer.case, guesses=guesses))
 
 
 class Measured(NamedTuple):
-    """One sequence: joints in the order of the model, stamps (n,), control (n, nu), position and effort (n, k)."""
+    """One sequence: joints in the order of the model, stamps (n,), control (n, nu), position and effort (n, k).
+
+    `rolled`: whether the stamps were those of a rollout.
+    """
 
     joints: list[str]
     time: Array
     control: Array
     position: Array
     effort: Array | None
+    rolled: bool
 
 
 def _run(model: Any, control: Any, sensordata: Any) -> Measured:
+    step, stamps = float(model.opt.timestep), np.asarray(control.times, dtype=float)
     time = np.asarray(sensordata.times, dtype=float)
+    rolled = bool(abs(time[0] - stamps[0] - step) < HAIR)
+    time = time - step * rolled
     position, effort = _measured(model, sensordata)
     joints = [name for i in range(model.njnt) if (name := model.joint(i).name) in position]
     known = bool(joints) and set(joints) <= set(effort)
     return Measured(
         joints,
         time,
-        held(_controls(model, control), np.asarray(control.times, dtype=float), time),
+        held(_controls(model, control), stamps, time),
         np.column_stack([position[name] for name in joints] or [time]),
         np.column_stack([effort[name] for name in joints]) if known else None,
+        rolled,
     )
 
 

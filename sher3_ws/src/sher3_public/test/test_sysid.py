@@ -51,6 +51,16 @@ def test_sensors_with_forces_in_the_order_of_the_model(spec, log):
         assert right(answer) and any("simulator's own" in guess for guess in answer.guessed)
 
 
+def test_readings_of_a_rollout_are_those_of_the_beginning_of_its_steps(spec, log):
+    """Its stamps are those of the end of a step: taken as they are, every joint is late by one."""
+    step = spec.compile().opt.timestep
+    names = {f"{j}_place": (SignalType.MjSensor, np.array([i])) for i, j in enumerate(("turn", "shoulder"))}
+    answer = gap.from_sysid(
+        sequences(spec, (TimeSeries(log.time, log.ctrl), TimeSeries(log.time + step, log.qpos, names)))
+    )
+    assert right(answer) and any("those of a rollout" in guess for guess in answer.guessed)
+
+
 def test_controls_hold_until_the_next():
     values = held(np.array([[1.0], [2.0]]), np.array([0.0, 1.0]), np.array([-0.5, 0.0, 0.9, 1.0, 7.0]))
     assert values.ravel().tolist() == [1.0, 1.0, 1.0, 2.0, 2.0]
