@@ -1,8 +1,9 @@
-"""Ten drawn arms with a structural fault each, and the published examples, beside mujoco.sysid: needs `sher3[sysid]`.
+"""The published examples, and ten drawn arms with a structural fault each, beside mujoco.sysid: needs `sher3[sysid]`.
 
-Both get the same log of the same faulty arm and the healthy model. mujoco.sysid fits what a user would give it: mass of
-each link, damping, dry friction, armature and spring of each joint and the gain of each drive. The diagnosis is given
-nothing. Another motion, not seen by either, tells what each corrected model is worth.
+Of the arms both get the same log of the same faulty arm and the healthy model. mujoco.sysid fits what a user would give
+it: mass of each link, damping, dry friction, armature and spring of each joint and the gain of each drive. The
+diagnosis is given nothing. Another motion, not seen by either, tells what each corrected model is worth. Then come
+drawn axes and servos of several causes each, as `drawn_machines.py --sysid` has them.
 """
 
 from __future__ import annotations
@@ -21,7 +22,10 @@ import mujoco
 import numpy as np
 import sher3.gap as gap
 from numpy.typing import NDArray
+from sher3_diagnosis.verdict import Verdict
 from sher3_public.errors import InputError
+from sysid_examples import lines_of
+from sysid_examples import table as examples
 
 sys.path.append(str(Path(__file__).parents[1] / "sher3_ws/src/sher3_chain/test"))
 
@@ -53,6 +57,28 @@ FAULTS = (
     "gain",
 )
 """What is hidden in arms 0 to 9, at a drawn joint; MuJoCo has no field for the third to the sixth."""
+TOLD = {
+    "viscous": ("viscous_friction", "extra"),
+    "coulomb": ("coulomb_friction", "force"),
+    "stribeck": ("stribeck_friction", "force"),
+    "cogging": ("cogging", "amplitude"),
+    "late command": ("command_delay", "reference_delay"),
+    "load friction": ("gear_loss", "share"),
+    "spring": ("spring_torque", "stiffness"),
+    "rotor": ("rotor_inertia", "inertia"),
+    "payload": ("payload_mass", "mass"),
+    "gain": ("controller_gain", "relative"),
+}
+"""Fault -> effect and parameter that tell its size."""
+FITTED = {
+    "viscous": "damping",
+    "coulomb": "frictionloss",
+    "spring": "stiffness",
+    "rotor": "armature",
+    "payload": "mass",
+    "gain": "gain",
+}
+"""Fault -> number that mujoco.sysid is given, by which it might be told."""
 
 
 class Log(NamedTuple):
@@ -70,6 +96,34 @@ class Hidden(NamedTuple):
     kind: str
     joint: int
     size: float
+
+
+def true_size(fault: Hidden, step: float) -> float:
+    """Return the size of a fault, SI units; of Stribeck friction its level at speed."""
+    scale = 0.5**fault.joint
+    each = {
+        "viscous": 2.0 * scale,
+        "coulomb": scale,
+        "stribeck": 0.5 * scale,
+        "cogging": scale,
+        "load friction": 0.2,
+        "spring": 6.0 * scale,
+        "rotor": 0.1 * scale,
+        "payload": 0.5,
+        "gain": -0.2,
+    }
+    return LATE * step if fault.kind == "late command" else each[fault.kind] * fault.size
+
+
+def off_by(found: float | None, true: float) -> str:
+    """Return by how much a found size is off, in words."""
+    return "-" if found is None else f"{abs(found / true - 1.0):.1%}"
+
+
+def named(verdict: Verdict, fault: Hidden) -> float | None:
+    """Return the size that a verdict gives of a fault; None where it does not name it."""
+    effect, parameter = TOLD[fault.kind]
+    return next((float(c.parameters[parameter].value) for c in verdict.causes if c.effect == effect), None)
 
 
 def faulty(xml: str, fault: Hidden) -> mujoco.MjModel:
@@ -133,8 +187,8 @@ def put(joint: mujoco.MjsJoint, what: str, value: float) -> None:
         setattr(joint, what, value)
 
 
-def fitted(xml: str, log: Log) -> tuple[mujoco.MjModel, list[str]]:
-    """Return the model as mujoco.sysid fits it, and the parameters that moved by more than three standard errors."""
+def fitted(xml: str, log: Log) -> tuple[mujoco.MjModel, list[str], dict[str, float]]:
+    """Return the model as mujoco.sysid fits it, the numbers that moved by more than three standard errors, and all."""
     from mujoco import sysid
 
     spec = mujoco.MjSpec.from_string(xml)
@@ -206,7 +260,8 @@ def fitted(xml: str, log: Log) -> tuple[mujoco.MjModel, list[str]]:
         if abs(b - a) > SURE * e and abs(b - a) > 1e-3 * max(abs(a), 1e-2)
     ]
     done = sysid.apply_param_modifiers(found, spec)
-    return (done if isinstance(done, mujoco.MjModel) else done.compile()), told
+    by = dict(zip(names, map(float, x - before), strict=True))
+    return (done if isinstance(done, mujoco.MjModel) else done.compile()), told, by
 
 
 def rolled(model: mujoco.MjModel, log: Log) -> float:
@@ -219,6 +274,12 @@ def rolled(model: mujoco.MjModel, log: Log) -> float:
     return float(np.sqrt(np.mean(np.square(left))))
 
 
+def diagnosed(xml: str, log: Log) -> gap.Answer:
+    """Return the answer of the diagnosis."""
+    columns = {"time": log.time, "ctrl": log.ctrl, "qpos": log.qpos, "actuator_force": log.force}
+    return gap.diagnose(xml, columns)
+
+
 def arm(seed: int, kind: str) -> str:
     """Return a row of the table."""
     rng = np.random.default_rng(seed)
@@ -226,38 +287,61 @@ def arm(seed: int, kind: str) -> str:
     fault = Hidden(kind, int(rng.integers(3)) if kind != "payload" else 2, float(rng.uniform(0.4, 1.0)))
     nominal, real = mujoco.MjModel.from_xml_string(xml), faulty(xml, fault)
     seen, other = moved(real, seed, fault), moved(real, seed + HELD_OUT, fault)
-    untuned = rolled(nominal, other)
+    untuned, true = rolled(nominal, other), true_size(fault, nominal.opt.timestep)
     began = time.perf_counter()
-    theirs, told = fitted(xml, seen)
+    theirs, told, by = fitted(xml, seen)
     seconds = time.perf_counter() - began
     began = time.perf_counter()
-    answer = gap.diagnose(xml, {"time": seen.time, "ctrl": seen.ctrl, "qpos": seen.qpos, "actuator_force": seen.force})
+    answer = diagnosed(xml, seen)
     own_seconds = time.perf_counter() - began
     try:
         ours = f"{rolled(mujoco.MjModel.from_xml_string(answer.corrected().text), other) / untuned:.2f}"
     except (InputError, ValueError) as error:
         ours = type(error).__name__
-    held_out = rolled(theirs, other) / untuned
+    joint = nominal.joint(fault.joint).name
+    place = f"link{fault.joint}" if kind == "payload" else joint
     cells = (
-        f"{kind}, {nominal.joint(fault.joint).name}",
+        f"{kind}, {joint}",
         f"{len(told)} of {NUMBERS * nominal.nu} numbers moved",
-        f"{held_out:.2f}",
+        off_by(by.get(f"{place} {FITTED.get(kind)}"), true),
+        f"{rolled(theirs, other) / untuned:.2f}",
         f"{seconds:.0f} s",
         answer.headline,
+        off_by(named(answer.verdict, fault), true),
         ours,
         f"{own_seconds:.1f} s",
     )
     return f"| {' | '.join(cells)} |"
 
 
-def main() -> None:
-    """Print the table, one row for each arm."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--arms", type=int, default=len(FAULTS))
-    count = parser.parse_args().arms
-    print("| hidden | mujoco.sysid | error held out | | here | error held out | |\n|---|---|---|---|---|---|---|")
+def arms(count: int) -> None:
+    """Print the table of the drawn arms."""
+    print(f"Lines beyond model and data: {lines_of(fitted)} and {lines_of(diagnosed)}.\n")
+    print("| hidden | mujoco.sysid | size off by | error held out | | here | size off by | error held out | |")
+    print("|---|---|---|---|---|---|---|---|---|")
     for i in range(count):
         print(arm(FIRST + i, FAULTS[i % len(FAULTS)]), flush=True)
+
+
+def machines(count: int) -> None:
+    """Print recall, precision and wrong causes on drawn axes and servos, here and by mujoco.sysid."""
+    from drawn_machines import SYSID, rows_of, score_of
+
+    for kind in ("axis", "servo"):
+        rows = rows_of(kind, range(FIRST, FIRST + count), None, sysid=True)
+        for name in ("sher3", SYSID):
+            print(f"{kind}, {name}: {score_of(rows, name).line()}", flush=True)
+
+
+def main() -> None:
+    """Print the tables."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--arms", type=int, default=len(FAULTS))
+    parser.add_argument("--machines", type=int, default=4, help="drawn axes, and as many servos")
+    asked_for = parser.parse_args()
+    examples()
+    arms(asked_for.arms)
+    machines(asked_for.machines)
 
 
 if __name__ == "__main__":

@@ -236,12 +236,17 @@ def rows_of(kind: str, seeds: range, kept: Path | None, sysid: bool = False) -> 
     return out
 
 
+def score_of(rows: list[dict], name: str) -> Score:
+    """Return the counts of one way to tell the causes."""
+    score = Score()
+    for row in rows:
+        score.add(set(row["truth"]), [set(x) for x in row[name]], row["powerless"])
+    return score
+
+
 def told(kind: str, rows: list[dict]) -> str:
     """Return the page of one kind of machine."""
-    scores = {name: Score() for name in ("sher3", *FITS, SYSID) if name in rows[0]}
-    for row in rows:
-        for name, score in scores.items():
-            score.add(set(row["truth"]), [set(x) for x in row[name]], row["powerless"])
+    scores = {name: score_of(rows, name) for name in ("sher3", *FITS, SYSID) if name in rows[0]}
     held = [x for row in rows for x in row["held"]]
     odd = [f"{row['seed']}: {x}" for row in rows for x in row["impossible"]]
     ours = scores["sher3"]

@@ -89,6 +89,13 @@ def test_units_that_cannot_be(log):
         gap.diagnose(MODEL, time, np.degrees(control), np.degrees(position))
 
 
+def test_noise_that_hides_the_forces_is_no_unit(log):
+    """In degrees all forces are smaller, those of the noise too: that speaks for no unit."""
+    time, control, position = log
+    noisy = 3.0 * position + 0.6 * np.random.default_rng(0).standard_normal(position.shape)
+    assert "cannot be judged: what nobody can foresee" in str(gap.diagnose(MOTORS, time, 5.0 * control, noisy))
+
+
 def test_a_control_that_is_no_place_and_one_that_is_no_force(log):
     time, control, position = log
     with pytest.raises(InputError, match="give it as effort="):

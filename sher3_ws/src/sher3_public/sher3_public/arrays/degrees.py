@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 from sher3_chain.manipulator.bodies import Bodies
+from sher3_chain.manipulator.evidence import DROWNED
 from sher3_chain.manipulator.mjcf.drives import Driven
 from sher3_chain.manipulator.model import arm_model
 from sher3_common.numbers.smoothing import savitzky_golay
@@ -48,7 +49,7 @@ def check_degrees(
     turns = [i for i, name in enumerate(names) if not bodies.joints[name]]
     most = float(np.nanmax(np.abs(run.position[:, turns]), initial=0.0))
     known = np.isfinite(run.position).all() and np.isfinite(run.time).all() and len(run.time) > 3 * WINDOW
-    if most < FURTHEST or not known:
+    if most < FURTHEST or not known or drowned(run.position[:, turns]):
         return
     radians, degrees = (left(names, run, controls, bodies, drives, x)[turns] for x in (1.0, np.pi / 180.0))
     told = np.isfinite(radians)
@@ -62,6 +63,12 @@ def check_degrees(
         return
     limit = f"{radians[told].min():.2g} left in rad"
     raise InputError("positions are likely in degrees", value=value, limit=limit, remedy=f"give rad, or {said}")
+
+
+def drowned(position: Array) -> bool:
+    """Return whether no force follows from positions (n, k) for their noise: any smaller unit then looks better."""
+    course = savitzky_golay(position, WINDOW, 3)
+    return float((position - course).std(axis=0).max()) > DROWNED * float(course.std(axis=0).max())
 
 
 def left(
