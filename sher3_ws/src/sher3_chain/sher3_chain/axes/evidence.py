@@ -14,6 +14,7 @@ from sher3_chain.axes.identification.acting import acting
 from sher3_chain.axes.identification.align import aligned
 from sher3_chain.axes.identification.identify import identify_mass, load_mass_of, share_of_inertia
 from sher3_chain.axes.scale import slip_of
+from sher3_chain.axes.stops import with_stops
 from sher3_chain.axes.view import AxisView
 from sher3_chain.chain.evidence import ChainEvidence, in_blocks
 from sher3_chain.constants import ZERO, constants
@@ -69,7 +70,8 @@ def _gathered(runs: Sequence[AxesRun], axis: Axis, repeats: bool) -> AxisEvidenc
         runs = [run.without(axis.name, ("effort",)) for run in runs]
         signals = [replace(s, effort=None) for s in signals]
     signals, notes = aligned(signals, axis)
-    notes = [*levels_of(signals, axis), *notes]
+    axis, stops = with_stops(signals, axis)
+    notes = [*levels_of(signals, axis), *notes, *stops]
     mass, interval = (axis.mass, None) if isinstance(axis.mass, float) else (0.0, None)
     untold, load_mass = slip, 0.0
     if axis.mass == "unknown" and all(s.effort is not None for s in signals):

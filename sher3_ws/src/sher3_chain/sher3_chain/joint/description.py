@@ -85,7 +85,7 @@ class Axis(Strict):
         effort_resolution: one step of the measured force, N or N m.
         lead: travel per motor revolution, m or rad; without it cogging is not named.
         range: positions the axis can reach, m or rad; what lies far outside is taken for a wrong unit, and at its ends
-            are stops: by a count or beyond them nothing is judged.
+            are stops: by a count or beyond them nothing is judged; None: stops are looked for (`axes/stops.py`).
     """
 
     name: str = Field(min_length=1)

@@ -1,4 +1,4 @@
-"""A slide that is driven against its stops: what they push with is no cause where its range is stated."""
+"""A slide that is driven against its stops: what they push with is no cause, be its range stated or found."""
 
 import numpy as np
 import pytest
@@ -27,8 +27,10 @@ def thrown(coulomb, seconds=16.0, fine=40):
 
 
 @pytest.mark.parametrize("coulomb", [0.0, 15.0])
-def test_friction_is_told_and_no_stop_is_a_cause(coulomb):
-    found = diagnose(machine(range=[-END, END]), [run_of(thrown(coulomb))]).verdict
+@pytest.mark.parametrize("stated", [{}, {"range": [-END, END]}])
+def test_friction_is_told_and_no_stop_is_a_cause(coulomb, stated):
+    found = diagnose(machine(**stated), [run_of(thrown(coulomb))]).verdict
+    assert any("stops found at -0.039" in note for note in found.notes) == (not stated)
     named = {c.effect: c.parameters for c in found.causes if c.stage == "motor_mechanics"}
     assert set(named) == ({"coulomb_friction"} if coulomb else set())
     assert any("slide: lies beyond the range" in note for note in found.notes)
