@@ -57,10 +57,26 @@ def tables_at(record: object) -> object:
 
 
 def columns_of(table: Any) -> dict[str, Array]:
-    """Return the columns of a table by name; texts are left out."""
-    names = list(table) if isinstance(table, Mapping) else [str(name) for name in table.columns]
-    found = {str(name): np.asarray(table[name]) for name in names}
-    return {name: x.astype(float) for name, x in found.items() if np.issubdtype(x.dtype, np.number)}
+    """Return the columns of a table by name, times in s; texts are left out. An index of stamps is the time."""
+    names = list(table) if isinstance(table, Mapping) else list(table.columns)
+    found = {str(name): _as_numbers(table[name]) for name in names}
+    index = np.asarray(getattr(table, "index", [])) if not isinstance(table, Mapping) else np.array([])
+    if index.dtype.kind in STAMPS and not any(name.lower() in ("t", "time", "stamp", "timestamp") for name in found):
+        found["time"] = index
+    return {name: _numbers(name, x) for name, x in found.items() if x.dtype.kind in STAMPS + "iu"}
+
+
+def _as_numbers(column: Any) -> NDArray[Any]:
+    """Return a column as it is, or as numbers where it holds objects that are some, such as those of pandas."""
+    found = np.asarray(column)
+    try:
+        return np.asarray(column, dtype=float) if found.dtype.kind == "O" else found
+    except (TypeError, ValueError):
+        return found
+
+
+STAMPS = "Mmf"
+"""Kinds of array that stamps may be: moments, spans of time, numbers with a fraction; counts of rows are none."""
 
 
 def columns_named(table: Mapping[str, Array], names: Sequence[str]) -> Array | None:

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 import sher3.gap as gap
 from drawn_arms import logged
+from sher3_machines.errors import MachineError
 
 
 def right(answer):
@@ -54,10 +55,10 @@ def test_logs_by_their_paths(log, tmp_path):
 
 
 class Frame:
-    """What a frame of pandas or Polars has and the diagnosis uses: names of columns, and columns by name."""
+    """What a frame of pandas or Polars has and the diagnosis uses: names of columns, columns by name, and an index."""
 
-    def __init__(self, columns):
-        self.data, self.columns = columns, list(columns)
+    def __init__(self, columns, index=()):
+        self.data, self.columns, self.index = columns, list(columns), index
 
     def __getitem__(self, name):
         return self.data[name]
@@ -71,6 +72,21 @@ def test_frames_of_numbered_columns_as_runs_with_tags_for_each(log):
     answer = gap.diagnose(log.xml, frames, tags=[{"day": "first"}, {"day": "second"}])
     cause = answer.causes[0]
     assert (cause.effect, cause.actuator, cause.condition) == ("coulomb_friction", "shoulder", "day second")
+
+
+@pytest.mark.parametrize("kind", ["seconds", "spans", "moments", "counts"])
+def test_the_index_of_a_frame_is_its_time(log, kind):
+    """Moments in a column of their own are it, too; a count of rows is none. A column may hold numbers as objects."""
+    spans = np.round(1e9 * log.time).astype("timedelta64[ns]")
+    index = {"seconds": log.time, "spans": spans, "moments": np.datetime64("2026-01-01") + spans}
+    numbered = {
+        f"{name}_{i}": x[:, i].astype(object) for name, x in (("qpos", log.qpos), ("ctrl", log.ctrl)) for i in (0, 1)
+    }
+    if kind == "counts":
+        with pytest.raises(MachineError, match="no column looks like a time"):
+            gap.diagnose(log.xml, Frame(numbered, np.arange(len(log.time))))
+        numbered["time"] = index["moments"]
+    assert right(gap.diagnose(log.xml, Frame(numbered, index.get(kind, np.arange(len(log.time))))))
 
 
 def test_a_simulator_s_own_effort_is_told_from_a_measured_one(log):
