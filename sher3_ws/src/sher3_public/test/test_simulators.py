@@ -81,7 +81,7 @@ def went(model, controls, speed=0.0):
     [
         ({"ctrl": np.zeros((400, 1))}, "commands differ"),
         ({"time": np.arange(400) * 0.003}, "stamps differ"),
-        ({"qpos": np.zeros((400, 1))}, "positions differ in shape"),
+        ({"qpos": np.zeros((400, 1))}, "positions differ in rows and columns"),
     ],
 )
 def test_what_is_no_pair_is_said(change, said):
@@ -89,6 +89,17 @@ def test_what_is_no_pair_is_said(change, said):
         gap.compare_simulators(pushed(), {**pushed(), **change}, BOX)
     with pytest.raises(gap.InputError, match="positions are missing"):
         gap.compare_simulators({"time": np.arange(9.0)}, {"time": np.arange(9.0)}, BOX)
+    mute = {name: x for name, x in pushed().items() if name != "ctrl"}
+    with pytest.raises(gap.InputError, match="commands are missing in the second trace"):
+        gap.compare_simulators(pushed(), mute, BOX)
+
+
+def test_numbered_columns_in_one_trace_and_one_array_in_the_other(log):
+    first = {"time": log.time, "ctrl": log.ctrl, "qpos": log.qpos}
+    loose = {f"{name}{i}": first[name][:, i] for name in ("ctrl", "qpos") for i in (0, 1)}
+    loose["qpos1"] = loose["qpos1"] + 0.01
+    found = gap.compare_simulators(first, {"time": log.time, **loose}, log.xml)
+    assert found.apart == pytest.approx([0.0, 0.01]) and found.cause
 
 
 def test_numbered_columns_are_put_in_order():

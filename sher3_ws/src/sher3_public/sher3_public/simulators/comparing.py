@@ -91,25 +91,30 @@ def compare_simulators(
 
 
 def _trace(given: Any) -> dict[str, Array]:
-    """Return the columns of a table, or of the log at a path; raises InputError for anything else."""
+    """Return the columns of a table, or of the log at a path, numbered ones as one; raises InputError for all else."""
     found = tables_at(given) if isinstance(given, PathLike) or (isinstance(given, str) and "<" not in given) else given
     found = found[0] if isinstance(found, list) and len(found) == 1 else found
     if not is_table(found):
         remedy = "give a table, or a log of one run, for each: compare_simulators(first, second, model)"
         raise InputError("a trace is no table", value=type(given).__name__, remedy=remedy)
-    return columns_of(found)
+    columns = columns_of(found)
+    whole = {n: x for n in (*COMMANDS, *POSITIONS) if (x := columns_named(columns, [n])) is not None}
+    return whole | {n: x for n, x in columns.items() if n.rstrip("0123456789]").rstrip("_.[") not in whole}
 
 
 def _apart(first: Mapping[str, Array], second: Mapping[str, Array]) -> Array:
     """Return the rms between the positions; raises InputError where the traces are not of the same commands."""
-    for what, names in (("stamps", STAMPS), ("positions", POSITIONS)):
-        if columns_named(first, names) is None:
-            limit = ", ".join(names)
-            raise InputError(f"{what} are missing", value=", ".join(first), limit=limit, remedy="name the columns so")
     for what, names in (("stamps", STAMPS), ("commands", COMMANDS), ("positions", POSITIONS)):
-        a, b = (np.empty((0, 0)) if (x := columns_named(t, names)) is None else x for t in (first, second))
+        each = [columns_named(table, names) for table in (first, second)]
+        lacking = [i for i, x in enumerate(each) if x is None]
+        if lacking and (what != "commands" or len(lacking) == 1):
+            value, limit = ", ".join((first, second)[lacking[0]]), ", ".join(names)
+            missing = f"{what} are missing in the {('first', 'second')[lacking[0]]} trace"
+            raise InputError(missing, value=value, limit=limit, remedy="name the columns so")
+        a, b = (np.empty((0, 0)) if x is None else x for x in each)
         if a.shape != b.shape:
-            raise InputError(f"{what} differ in shape", value=b.shape, limit=a.shape, remedy="record both alike")
+            remedy = "record both at the same stamps, as many columns of each; cut the longer one"
+            raise InputError(f"{what} differ in rows and columns", value=b.shape, limit=a.shape, remedy=remedy)
         away = float(np.abs(a - b).max(initial=0.0))
         if what != "positions" and away > SAME * np.abs(a).max(initial=0.0):
             raise InputError(f"{what} differ", value=away, remedy="give both simulators the same, open loop")
