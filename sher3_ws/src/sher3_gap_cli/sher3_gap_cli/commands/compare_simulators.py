@@ -25,7 +25,7 @@ def compare_simulators(
     Exit codes: 0 compared, 2 a trace or the model is wrong, or the commands were not the same.
     """
     from sher3_machines.intake.tables import read_tables
-    from sher3_public import compare_simulators as compared
+    from sher3_public.simulators.comparing import compare_simulators as compared
 
     with reported(as_json):
         found = compared(read_tables(first), read_tables(second), model, (first.stem, second.stem))

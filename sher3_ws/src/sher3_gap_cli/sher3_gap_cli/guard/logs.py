@@ -42,8 +42,8 @@ class Told:
 
 def told(log: Log, say: Say = silent) -> Told:
     """Diagnose one log; input errors come back as the answer, mistakes of ours are raised."""
-    from sher3_public import diagnose
     from sher3_public.guard.baseline import entry_of
+    from sher3_public.one_call import diagnose
 
     say(f"reading {log.log}")
     try:

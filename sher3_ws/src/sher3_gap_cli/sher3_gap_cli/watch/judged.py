@@ -34,8 +34,8 @@ class Status(NamedTuple):
 def judged(model: str, joints: tuple[str, ...], arrays: tuple[Array | None, ...]) -> list[Status]:
     """Return the statuses of a window (time, command, position, effort); a window that cannot be judged says why."""
     from sher3_diagnosis.report.summary import cause_text
-    from sher3_public import diagnose
     from sher3_public.models import source_of
+    from sher3_public.one_call import diagnose
 
     time, command, position, effort = arrays
     try:

@@ -12,16 +12,16 @@ from typing import TYPE_CHECKING
 from sher3_common.faces import lazy
 
 if TYPE_CHECKING:
-    from sher3_public import Answer as Answer
-    from sher3_public import Comparison as Comparison
-    from sher3_public import Corrected as Corrected
-    from sher3_public import InputError as InputError
-    from sher3_public import Replay as Replay
-    from sher3_public import Replays as Replays
-    from sher3_public import compare_simulators as compare_simulators
-    from sher3_public import diagnose as diagnose
-    from sher3_public import from_lerobot as from_lerobot
-    from sher3_public import from_sysid as from_sysid
+    from sher3_public.answer import Answer as Answer
+    from sher3_public.correcting import Corrected as Corrected
+    from sher3_public.errors import InputError as InputError
+    from sher3_public.lerobot import from_lerobot as from_lerobot
+    from sher3_public.one_call import diagnose as diagnose
+    from sher3_public.simulating import Replay as Replay
+    from sher3_public.simulating import Replays as Replays
+    from sher3_public.simulators.comparing import Comparison as Comparison
+    from sher3_public.simulators.comparing import compare_simulators as compare_simulators
+    from sher3_public.sysid import from_sysid as from_sysid
 
 __all__ = [
     "Answer",
