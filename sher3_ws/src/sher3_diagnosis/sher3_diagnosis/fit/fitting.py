@@ -9,7 +9,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import pairwise
+from functools import cached_property
+from itertools import accumulate, pairwise
 
 import numpy as np
 
@@ -54,7 +55,7 @@ class Fit:
         """Return the terms without one of them."""
         return [t for i, t in enumerate(self.terms) if i != index]
 
-    @property
+    @cached_property
     def total(self) -> float:
         """Held-out loss over all runs and channels."""
         return sum(self.loss.values())
@@ -79,12 +80,12 @@ class _Part:
 def fit(data: Whitened, terms: Sequence[Term]) -> Fit:
     """Fit all terms together and score every run with the coefficients of the others."""
     runs = len(data.target)
-    starts = np.cumsum([0, *(t.width for t in terms)])
-    coefficients, held_out = np.zeros(int(starts[-1])), np.zeros((runs, int(starts[-1])))
+    starts = [0, *accumulate(t.width for t in terms)]
+    coefficients, held_out = np.zeros(starts[-1]), np.zeros((runs, starts[-1]))
     loss, cancelled = dict(data.null_loss), 0.0
     for members in connected(terms):
         part = _part(data, tuple(terms[i] for i in members))
-        columns = np.concatenate([np.arange(starts[i], starts[i + 1]) for i in members]).astype(int)
+        columns = [k for i in members for k in range(starts[i], starts[i + 1])]
         coefficients[columns], held_out[:, columns] = part.coefficients, part.held_out
         loss.update(part.loss)
         cancelled = max(cancelled, part.cancelled)
@@ -122,12 +123,14 @@ def _fit_part(data: Whitened, terms: tuple[Term, ...]) -> _Part:
     runs, p = len(data.target), sum(t.width for t in terms)
     normal = sum((n for n, _, _ in pieces.values()), np.zeros((runs, p, p)))
     right = sum((b for _, b, _ in pieces.values()), np.zeros((runs, p)))
-    limit = np.repeat([t.limit for t in terms], [t.width for t in terms])
-    prior = np.diag(np.isfinite(limit).astype(float))
-    total, all_right = normal.sum(axis=0), right.sum(axis=0)
-    left_out = np.concatenate([(total + prior)[None], total - normal + prior])
-    solved = solve_within(left_out, np.concatenate([all_right[None], all_right - right]), limit)
-    held_out = _with_deviations(solved[1:], total + prior, all_right, limit)
+    limit = np.array([t.limit for t in terms for _ in range(t.width)])
+    # All runs together come first, then all but one of them.
+    total = normal.sum(axis=0)
+    normals = total - np.concatenate([np.zeros((1, p, p)), normal])
+    rights = right.sum(axis=0) - np.concatenate([np.zeros((1, p)), right])
+    normals += np.diag(np.isfinite(limit).astype(float))
+    solved = solve_within(normals, rights, limit)
+    held_out = _with_deviations(solved[1:], normals[0], rights[0], limit)
     loss: dict[tuple[int, Channel], float] = {}
     for c, (a, b, energy) in pieces.items():
         held = energy - 2.0 * np.einsum("rp,rp->r", held_out, b) + np.einsum("rp,rpq,rq->r", held_out, a, held_out)
@@ -137,7 +140,7 @@ def _fit_part(data: Whitened, terms: tuple[Term, ...]) -> _Part:
 
 def _cancelled(terms: Sequence[Term], coefficients: Array, normal: Array) -> float:
     """Return the largest of what a term adds over what all of them add, rms, from their normal matrix (p, p)."""
-    ends = pairwise(np.cumsum([0, *(t.width for t in terms)]))
+    ends = pairwise([0, *accumulate(t.width for t in terms)])
     own = max(float(coefficients[a:b] @ normal[a:b, a:b] @ coefficients[a:b]) for a, b in ends)
     whole = float(coefficients @ normal @ coefficients)
     return float(np.sqrt(max(own, 0.0) / max(whole, np.finfo(float).tiny)))
