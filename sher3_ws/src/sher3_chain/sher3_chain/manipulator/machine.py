@@ -28,6 +28,7 @@ from sher3_chain.joint.own_unit import RECORDED, in_own_unit
 from sher3_chain.joint.record import AxesRun
 from sher3_chain.manipulator.causes.confounding import GAIN, PAYLOAD, WEIGHT, confounding_notes, same_force
 from sher3_chain.manipulator.causes.lateness import LATE, late_efforts, timing_notes, with_closure, with_late_readings
+from sher3_chain.manipulator.causes.links import of_a_sum
 from sher3_chain.manipulator.causes.payload import about_its_own
 from sher3_chain.manipulator.causes.plan import JOINT
 from sher3_chain.manipulator.causes.search import causes_of_arm
@@ -128,8 +129,8 @@ class Manipulator(Chain[ArmMotionEvidence]):
         """Fit friction again away from reversals; give forces of a joint with unknown gain in the recorded unit."""
         causes = requantified(evidence, attribution, causes)
         causes = within_bounds(causes, attribution.told, self.effects(evidence))
-        causes = [with_late_readings(cause) for cause in causes]
-        causes = [with_closure(cause, term.shape) for cause, (term, _) in zip(causes, attribution.told, strict=True)]
+        told = zip(map(with_late_readings, causes), (term for term, _ in attribution.told), strict=True)
+        causes = [with_closure(of_a_sum(cause, term, self.model), term.shape) for cause, term in told]
         return evidence, [with_hidden(in_own_unit(c, RECORDED)) if c.actuator in evidence.shares else c for c in causes]
 
     def remarks(self, finding: Finding[ArmMotionEvidence]) -> list[str]:

@@ -5,6 +5,8 @@ import numpy as np
 import pytest
 import sher3.gap as gap
 from drawn_arms import drawn_xml, log_of_servos
+from sher3_chain.manipulator.causes.links import OF_A_SUM
+from sher3_chain.manipulator.rigid.physical import can_exist
 
 SECONDS = 12.0
 OF_A_JOINT = {"coulomb_friction", "viscous_friction"}
@@ -24,6 +26,13 @@ def wrong_links(rng):
     return xml, spec.compile()
 
 
+def test_a_body_can_exist_where_its_inertia_about_its_centre_is_one():
+    """A kilogram at 0.1 m along z has 0.01 kg m^2 about x and y; less is none, nor is a mass below zero."""
+    point = np.array([1.0, 0.0, 0.0, 0.1, 0.011, 0.0, 0.011, 0.0, 0.0, 0.001])
+    assert can_exist(point) and not can_exist(-point)
+    assert not can_exist(point - np.array([0.0] * 4 + [0.002] + [0.0] * 5))
+
+
 @pytest.mark.parametrize("seed", [3, 4, 5])
 def test_several_wrong_links_are_links_and_neither_cables_nor_waves_nor_gains(seed):
     rng = np.random.default_rng(seed)
@@ -31,6 +40,8 @@ def test_several_wrong_links_are_links_and_neither_cables_nor_waves_nor_gains(se
     answer = gap.diagnose(xml, log_of_servos(real, rng, SECONDS))
     links = {c.actuator for c in answer.causes if c.effect == "link_inertia"}
     assert links and {c.effect for c in answer.causes} <= {"link_inertia", *OF_A_JOINT}
+    sums = {c.actuator for c in answer.causes for p in c.parameters.values() if p.means == OF_A_SUM}
+    assert "body2" in sums and "change" not in {n for c in answer.causes for n, p in c.parameters.items() if p.means}
     if seed == 3:
         assert gap.diagnose(answer.corrected().text, log_of_servos(real, rng, SECONDS)).status == "no_gap"
 

@@ -6,16 +6,32 @@ import mujoco
 import numpy as np
 import pytest
 from drawn_arms import drawn_xml
-from sher3_chain.manipulator.bodies import bodies_of_mujoco
+from sher3_chain.manipulator.bodies import bodies_of_mujoco, read_bodies
 from sher3_chain.manipulator.description import ManipulatorDescription
 from sher3_chain.manipulator.kind import KIND
 from sher3_chain.manipulator.mjcf.drives import Step, driven
 from sher3_chain.manipulator.mjcf.joint import drive_joint
 from sher3_chain.manipulator.model import arm_model
+from sher3_machines import MachineError
 
 XML = """<mujoco><option timestep="0.002" integrator="implicitfast"/><worldbody>
 <body><joint name="a" axis="0 1 0" damping="0.5"/><geom size="0.1" mass="2" pos="0.2 0 0"/></body></worldbody>
 <actuator>{}</actuator></mujoco>"""
+
+
+MESHED = """<mujoco><asset><mesh name="m" file="gone.obj"/></asset><worldbody><body>
+<joint name="a" axis="0 1 0"/>{}<geom type="mesh" mesh="m"/></body></worldbody></mujoco>"""
+
+
+def test_meshes_that_are_not_there_are_not_needed_where_masses_are_stated(tmp_path):
+    path = tmp_path / "a.xml"
+    path.write_text(MESHED.format('<inertial mass="2" pos="0.1 0 0" diaginertia="0.1 0.1 0.1"/>'))
+    (link,) = read_bodies(path).tree.links
+    assert link.name == "a" and link.inertia[0] == pytest.approx(2.0)
+    path.write_text(MESHED.format(""))
+    with pytest.raises(MachineError, match="Error opening") as refused:
+        read_bodies(path)
+    assert "<inertial>" in refused.value.remedy
 
 
 def drive_of(actuators):

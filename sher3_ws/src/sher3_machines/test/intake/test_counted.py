@@ -50,3 +50,18 @@ def test_nothing_is_said_at_rest_or_of_speeds_of_another_joint():
     assert counted_stamps(t, np.zeros_like(x), np.zeros_like(v)) is None
     assert counted_stamps(t, x, rng.normal(size=v.shape)) is None
     assert counted_stamps(t[:50], x[:50], v[:50]) is None
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_readings_that_a_faster_log_holds_unevenly_are_counted(seed):
+    """A channel of 100 Hz in rows of 1 ms, each reading held for 8 to 12 of them, with a rest in the middle."""
+    rng = np.random.default_rng(seed)
+    even = 10.0 * PERIOD * np.arange(1500)
+    x, v = motion(np.minimum(even, 7.0) + np.maximum(even - 8.0, 0.0), seed)
+    v = v * ((even < 7.0) | (even > 8.0))[:, None]
+    rows = np.cumsum(rng.integers(8, 13, size=len(even)))
+    at = np.searchsorted(rows, np.arange(rows[-1]), side="right")
+    found = counted_stamps(PERIOD * np.arange(len(at)), x[at], v[at])
+    assert found is not None
+    steps = np.diff(found[found != np.roll(found, 1)])
+    assert np.mean(np.abs(steps / np.median(steps) - 1.0) < 1e-6) > 0.99

@@ -23,8 +23,11 @@ from sher3_diagnosis.fit.term import again
 from sher3_diagnosis.fit.whitened import Whitened
 from sher3_diagnosis.quantify.jackknife import standard_error
 from sher3_diagnosis.thresholds import NEEDED, PRICE
+from sher3_diagnosis.verdict import Cause
 
 from sher3_chain.manipulator.evidence import ArmMotionEvidence, channel_of
+from sher3_chain.manipulator.model import PARAMETERS, ArmModel
+from sher3_chain.manipulator.rigid.physical import can_exist
 from sher3_chain.thresholds import CONFOUNDED
 
 CLEARLY = 0.5
@@ -34,6 +37,8 @@ A rigid body has ten numbers, and what a joint does by itself is partly like one
 """
 ROUNDS = 3
 """Rounds in which what is left of each joint is its weight, first by plain laws alone, then beside links."""
+OF_A_SUM = "in a sum over links"
+"""What stands for a number of a link that no body has: the motion tells base parameters, sums over several links."""
 Law = tuple[Effect, str, Shape]
 
 
@@ -61,6 +66,19 @@ def wrong_links(evidence: ArmMotionEvidence, page: Effect, laws: Sequence[Law]) 
         left = after
     at = [i for i, term in enumerate(found.terms) if term.effect.id == page.id]
     return [(page, found.terms[i].site, page.found(_measured(found, i))) for i in at]
+
+
+def of_a_sum(cause: Cause, term: Term, model: ArmModel) -> Cause:
+    """Return a cause with its numbers as those of a sum where the link that it sits on cannot have them by itself."""
+    if term.effect.free() is None:
+        return cause
+    names, first = term.effect.gives, PARAMETERS * model.links.index(term.site)
+    change = np.array([term.shape.get(name, 0.0) for name in names])
+    if can_exist(model.inertial[first : first + PARAMETERS] + change):
+        return cause
+    each = cause.parameters.items()
+    sums = {n: p.model_copy(update={"means": OF_A_SUM}) if n in names else p for n, p in each}
+    return cause.model_copy(update={"parameters": sums})
 
 
 def worthy(evidence: Evidence, terms: Sequence[Term]) -> Fit:

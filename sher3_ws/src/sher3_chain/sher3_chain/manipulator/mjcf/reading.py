@@ -12,6 +12,9 @@ from sher3_machines.errors import MachineError
 MAX_BYTES = 20_000_000
 """Largest model file that is read."""
 
+MISSING = "Error opening file"
+"""What MuJoCo says of a file that is not there."""
+
 
 def is_mjcf(text: str) -> bool:
     """Return whether the text of a model file is MJCF; a URDF may hold an element `mujoco` too."""
@@ -30,12 +33,31 @@ def mujoco(wanted: object = "MJCF") -> ModuleType:
 def compiled(text: str, label: str, path: Path | None = None) -> Any:
     """Return an MJCF text as MuJoCo's `MjModel`, with what lies beside its file where there is one.
 
+    Files of meshes may be missing: a body whose mass is stated moves as one without a shape does.
+
     Raises:
         MachineError: MuJoCo is not installed, or refuses the model.
     """
-    api = mujoco(label).MjModel
+    api = mujoco(label)
     try:
-        return api.from_xml_string(text) if path is None else api.from_xml_path(str(path))
+        return api.MjModel.from_xml_string(text) if path is None else api.MjModel.from_xml_path(str(path))
     except ValueError as error:
-        remedy = "correct it until MuJoCo loads it"
+        found = _without_meshes(api, text, path) if MISSING in str(error) else None
+        if found is not None:
+            return found
+        remedy = "correct it until MuJoCo loads it; a body with an <inertial> needs no file of its mesh"
         raise MachineError(f"{label}: cannot be read", value=str(error)[:120], remedy=remedy) from error
+
+
+def _without_meshes(api: ModuleType, text: str, path: Path | None) -> Any:
+    """Return the model without its meshes; None where one gives a body its mass, or MuJoCo refuses it still."""
+    spec = api.MjSpec.from_string(text) if path is None else api.MjSpec.from_file(str(path))
+    shapes = [geom for geom in spec.geoms if geom.type == api.mjtGeom.mjGEOM_MESH]
+    if not all(geom.parent.explicitinertial for geom in shapes):
+        return None
+    for part in (*shapes, *spec.meshes):
+        spec.delete(part)
+    try:
+        return spec.compile()
+    except ValueError:
+        return None

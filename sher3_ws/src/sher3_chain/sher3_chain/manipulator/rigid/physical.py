@@ -63,6 +63,11 @@ def physical(tree: Tree, own: Array, change: Array, places: NDArray[np.int64]) -
     return bodies(least_squares(left, start, slope, x_scale="jac").x).reshape(own.shape)
 
 
+def can_exist(inertial: Array) -> bool:
+    """Return whether there is a body with these inertial parameters (10,)."""
+    return float(np.linalg.eigvalsh(_pseudo(inertial))[0]) >= 0.0
+
+
 def _forces(tree: Tree, change: Array) -> tuple[Array, Array]:
     """Return the force per parameter, (N, 10 links), and that of a change, (N,), in shares of what a joint needs."""
     rng = np.random.default_rng(0)

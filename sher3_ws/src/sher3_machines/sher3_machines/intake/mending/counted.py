@@ -11,6 +11,8 @@ from __future__ import annotations
 import numpy as np
 from sher3_diagnosis.channel import Array
 
+from sher3_machines.intake.mending.repeats import HELD
+
 MOVING = 0.05
 """Mean square of the speed, over its mean, from which it tells the time between two rows."""
 FEWEST = 100
@@ -32,13 +34,24 @@ LONGEST = 20.0
 def counted_stamps(t: Array, x: Array, v: Array) -> Array | None:
     """Return stamps (n,) by the periods that the motion tells; None where it tells none, or the stamps are as good.
 
-    Rows between which no time passed have one stamp; those between which nothing moved are a period apart.
+    Rows between which no time passed have one stamp; those between which nothing moved are a period apart. Of a log
+    that is faster than the places and speeds in it new readings are counted; they rest for as long as they are held.
 
     Args:
         t: stamps (n,), s, that grow.
         x: places (n, k), m or rad.
         v: their speeds (n, k).
     """
+    new = np.concatenate([[True], np.any(np.diff(np.column_stack([x, v]), axis=0) != 0.0, axis=1)])
+    held = bool(new.mean() < 1.0 - HELD)
+    if held:
+        counted = _counted(t[new], x[new], v[new], held)
+        return None if counted is None else counted[np.cumsum(new) - 1]
+    return _counted(t, x, v, held)
+
+
+def _counted(t: Array, x: Array, v: Array, held: bool) -> Array | None:
+    """Return stamps (n,) as `counted_stamps` does; of readings that were `held` the log says for how many periods."""
     if len(t) <= FEWEST or not (np.diff(t) > 0.0).all():
         return None
     mean = 0.5 * (v[1:] + v[:-1])
@@ -57,7 +70,8 @@ def counted_stamps(t: Array, x: Array, v: Array) -> Array | None:
     if np.mean(off[moving] < NEAR * period) < MOST or rms(off[moving]) > CLEARER * rms(by_stamps[moving]):
         return None
     noise = rms((off * np.sqrt(square))[moving])
-    counts = np.where(noise < SURE * period * np.sqrt(square), counts, 1.0)
+    rest = np.maximum(np.round(np.diff(t) / period), 1.0) if held else 1.0
+    counts = np.where(noise < SURE * period * np.sqrt(square), counts, rest)
     period = float(np.diff(t)[~hole].sum() / counts[~hole].sum())  # the whole takes as long as the stamps say
     return np.asarray(t[0] + np.concatenate([[0.0], np.cumsum(np.where(hole, np.diff(t), period * counts))]))
 
