@@ -36,12 +36,13 @@ EPISODES = (
     "trial",
 )
 """Words that people number runs by; joints, sensors and channels are numbered by others."""
-NUMBERED = re.compile(rf"(?i:(?P<group>(?:[^/]+/)*?(?:{'|'.join(EPISODES)})[ _-]?\d+)/(?P<column>.+))")
-"""A column of a group that is numbered as runs are: `data/demo_12/obs/q`."""
+WORD = rf"(?:[^/]*[ _-])?(?:{'|'.join(EPISODES)})[ _-]?\d+(?:[ _-][^/]*)?"
+NUMBERED = re.compile(rf"(?i:(?P<group>(?:[^/]+/)*?{WORD})/(?P<column>.+))")
+"""A column of a group that is numbered as runs are: `data/demo_12/obs/q`, `fourier_test3_results/q`."""
 
 FILE = re.compile(r"(?P<group>[^/]+)/(?P<column>.+)")
 """A column of a file of a folder."""
-DIGITS = re.compile(r"\d+")
+DIGITS = re.compile(r"[ _-]?\d+")
 
 
 def runs_of(data: Sequence[Path]) -> dict[str, Tables]:
@@ -66,9 +67,8 @@ def episodes_in(tables: Tables, named: re.Pattern[str] = NUMBERED) -> dict[str, 
     for name, x in tables.items():
         if match := named.fullmatch(name):
             parts[match["group"]][match["column"]] = x
-    if len(parts) < 2 or len({tuple(sorted(part)) for part in parts.values()}) > 1:
-        return {}
-    if named is FILE and (len({DIGITS.sub("#", group) for group in parts}) > 1 or not all(map(_whole, parts.values()))):
+    kinds = {(DIGITS.sub("#", group), *sorted(part)) for group, part in parts.items()}
+    if len(parts) < 2 or len(kinds) > 1 or (named is FILE and not all(map(_whole, parts.values()))):
         return {}
     beside = {name: x for name, x in tables.items() if not name.startswith(tuple(f"{group}/" for group in parts))}
     return {group.replace("/", "_"): {**beside, **part} for group, part in parts.items()}

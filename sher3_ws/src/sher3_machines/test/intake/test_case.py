@@ -179,3 +179,14 @@ def test_numbered_files_that_hold_all_joints_are_runs_and_those_of_single_joints
             np.savez(folder / f"sweep_of_joint_{i}.npz", time=np.arange(50.0), q=position)
     assert list(runs_of([whole])) == ["sweep_of_joint_1", "sweep_of_joint_3"]
     assert list(runs_of([single])) == ["single"]
+
+
+def test_words_behind_the_number_of_a_run_are_the_same_for_all_runs(tmp_path):
+    """`a_test1_results.csv` and `a_test2_results.csv` are runs; `a_test1_pos.csv` and `a_test1_vel.csv` are signals."""
+    for folder, ends in (("runs", ("1_results", "2_results")), ("signals", ("1_pos", "1_vel"))):
+        (tmp_path / folder).mkdir()
+        for end in ends:
+            np.savetxt(
+                tmp_path / folder / f"a_test{end}.csv", np.random.default_rng(0).normal(size=(50, 4)), delimiter=","
+            )
+    assert len(runs_of([tmp_path / "runs"])) == 2 and list(runs_of([tmp_path / "signals"])) == ["signals"]
