@@ -219,6 +219,8 @@ def missing(part: AxisEvidence) -> str:
     if not all(len(view.run.grid) < 2 * BLOCKS for view in part.records):
         if part.axis.driven and part.axis.mass is None:
             return "its force is recorded and its `mass` is not stated: state it, or `mass: unknown`"
+        if part.axis.free and part.axis.mass is None:
+            return "nothing drives it: of a body that is let go state `mass`; 1.0 tells its forces for each kg (kg m^2)"
         return "nothing was recorded that its position can be compared with"
     longest = max((view.run for view in part.records), key=lambda run: run.ticks * run.period)
     return (

@@ -10,6 +10,7 @@ from sher3_diagnosis.fit.fitting import Term, make_term
 from sher3_diagnosis.thresholds import FLOOR_SCATTER, POOLED
 
 from sher3_chain.axes.evidence import AxisEvidence
+from sher3_chain.joint.own_unit import renamed
 
 
 def least_seen(evidence: AxisEvidence, effects: Sequence[Effect]) -> list[str]:
@@ -22,6 +23,7 @@ def least_seen(evidence: AxisEvidence, effects: Sequence[Effect]) -> list[str]:
             if size is not None:
                 name, value = next(iter(effect.parameters(shape, np.array([size])).items()))
                 unit = effect.unit(name, term.site, term.site in evidence.rotary)
+                unit = renamed(unit, own) if (own := evidence.axis.own_unit) else unit
                 said.append(f"{effect.id} from {abs(value):.2g}" + (f" {unit}" if unit != "1" else ""))
     return [f"{evidence.axis.name}: would have shown: {', '.join(said)}"] if said else []
 

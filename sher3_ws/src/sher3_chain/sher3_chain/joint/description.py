@@ -13,7 +13,7 @@ from pydantic import Field, model_validator
 from sher3_machines.intake.fields import VELOCITIES, Clock, Column, Strict
 
 from sher3_chain.joint.conditions import Tagged
-from sher3_chain.joint.own_unit import OWN_UNITS, TOLD
+from sher3_chain.joint.own_unit import OWN_UNITS, TOLD, VOLTAGES
 
 
 class Signals(Strict):
@@ -181,8 +181,8 @@ class Axis(Strict):
     @property
     def told(self) -> bool:
         """Whether what was recorded of the drive is no force yet."""
-        source = self.signals.effort or self.signals.command
-        return source is not None and source.unit in TOLD
+        read, told = self.signals.effort, self.signals.command
+        return read.unit in VOLTAGES if read is not None else told is not None and told.unit in TOLD
 
     @property
     def unit_of_force(self) -> str:

@@ -9,8 +9,10 @@ RECORDED = "eu"
 OWN_UNITS = {"A": "A", "mA": "A", "V": "V", "mV": "V", "%": "%", "count": "count", "1": RECORDED}
 """Unit of an effort that is no force -> the unit in which forces are then given."""
 
-TOLD = ("V", "mV", "%", "1")
-"""Units of a drive's input: a coil, a propeller or a valve turns it into a force."""
+VOLTAGES = ("V", "mV")
+TOLD = (*VOLTAGES, "%", "1")
+"""Units of what a drive is told: a coil, a propeller or a valve turns it into a force. An effort was read: of that, a
+share or a number without a unit is a force already, and only a voltage is none."""
 
 
 def own_unit_note(axis: str, unit: str) -> str:

@@ -58,9 +58,10 @@ def test_a_force_that_comes_at_once_has_no_lag(weight):
     assert "drive_lag" not in found(swung(weight=weight, viscous=0.15))
 
 
-def test_a_recorded_force_has_no_lag():
-    """What was measured as a force is the force: an early reading stays one of the recorder."""
-    assert "drive_lag" not in found(swung(lag=0.12, unit="N*m"))
+@pytest.mark.parametrize("unit", ["N*m", "%", "1"])
+def test_a_recorded_force_has_no_lag(unit):
+    """What was measured as a force is the force, in whatever unit: an early reading stays one of the recorder."""
+    assert "drive_lag" not in found(swung(lag=0.12, unit=unit))
 
 
 def drawn(seed):

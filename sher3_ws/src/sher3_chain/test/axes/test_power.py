@@ -1,6 +1,6 @@
 """A verdict without a gap says which causes it would have seen; twice as much of one is seen."""
 
-from slides import driven, effects, verdict_of
+from slides import columns, driven, effects, verdict_of
 
 
 def test_no_gap_says_which_friction_would_have_shown():
@@ -8,3 +8,10 @@ def test_no_gap_says_which_friction_would_have_shown():
     least = float(said.split("coulomb_friction from ")[1].split()[0])
     assert 0.0 < least < 1.0
     assert "coulomb_friction" in effects(verdict_of(driven(seconds=8.0, coulomb=2.0 * least)))
+
+
+def test_the_least_size_is_in_the_unit_of_the_force_that_was_recorded():
+    amperes = {"signals": {**columns("position"), **columns("command", unit="A")}, "mass": "unknown"}
+    verdict = verdict_of(driven(seconds=8.0), **amperes, command_law={"kind": "force"})
+    said = next(n for n in verdict.notes if "would have shown" in n)
+    assert said.split("coulomb_friction from ")[1].split()[1] == "A,"

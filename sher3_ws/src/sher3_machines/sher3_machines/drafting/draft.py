@@ -23,7 +23,7 @@ from sher3_machines.drafting.guesses import (
     travel,
 )
 from sher3_machines.drafting.names import DRIVING, POSITION, named, words_of
-from sher3_machines.drafting.roles import SIGNALS, TOLD, Place, moves, placed, together, values_of
+from sher3_machines.drafting.roles import SIGNALS, TOLD, Place, moves, once, placed, together, values_of
 from sher3_machines.drafting.speeds import told_by_speed
 from sher3_machines.errors import MachineError
 from sher3_machines.intake.fields import TIME_UNITS, VELOCITIES
@@ -37,7 +37,9 @@ from sher3_machines.thresholds import FURTHEST
 PLACES = ("reference", "load")
 """Signals that are in the unit of the position where their name says no other."""
 ROTARY_UNITS = ("rad", "mrad", "deg", "arcmin", "arcsec", "rev", "count")
-ROTARY = (*ROTARY_UNITS, "rad/s", "deg/s", "rpm")
+ROTARY = (*ROTARY_UNITS, "rad/s", "deg/s", "rev/s", "rpm")
+NEWTONS = ("N", "kN", "mN", "gf", "kgf", "lbf", "N*m", "mN*m")
+"""Units of forces and torques that add up."""
 CARTESIAN = {"x", "y", "z"}
 """Names of axes that slide."""
 GEARED = 1.5
@@ -90,6 +92,7 @@ def drafted(path: Path, tables: Tables, rate: float | None, guesses: list[str], 
     period = 1.0 / rate if rate else period_of(tables[str(clock)]) * TIME_UNITS[time["unit"]]
     roles = placed(tables, clock, guesses, held)
     groups, left = together(roles)
+    groups = once(groups, tables, guesses)
     known = {name for name, _ in roles}
     left += [n for n, x in tables.items() if n not in known and n != clock and moves(x)]
     axes = [_axis(axis, signals, tables, period, guesses) for axis, signals in groups.items()]
@@ -155,6 +158,7 @@ def _axis(axis: str, signals: Mapping[str, Place], tables: Tables, period: float
             columns[signal] = _column(*signals[signal], usual, factor if place else 1.0)
             if signal not in ("position", "velocity"):
                 guesses.append(f"{label}: {signal} is {signals[signal][0]!r}, because of its name")
+    _without_other_force(label, columns, guesses)
     own = unit
     columns["position"].update({"unit": unit, **({"factor": factor} if factor != 1.0 else {})})
     if "load" in signals:
@@ -181,6 +185,18 @@ def _axis(axis: str, signals: Mapping[str, Place], tables: Tables, period: float
     turns = own == "rev" or own in VELOCITIES  # may well be many
     named_so = why == NAMED and not turns
     return {**out, **(_range(label, x * UNITS[own] * factor, str(out["motion"]), guesses) if named_so else {})}
+
+
+def _without_other_force(label: str, columns: dict[str, Any], guesses: list[str]) -> None:
+    """Leave out a force from outside that is no force of the drive's kind: a weight beside a torque, or a current."""
+    drive = columns.get("effort", columns.get("command"))
+    if drive is None or "applied" not in columns:
+        return
+    units = [columns["applied"]["unit"], drive["unit"]]
+    torques = [unit.endswith("N*m") for unit in units]
+    if torques[0] != torques[1] or not set(units) <= set(NEWTONS):
+        out = columns.pop("applied")["column"]
+        guesses.append(f"{label}: {out!r} is not used, because it is in {units[0]} and the drive's force in {units[1]}")
 
 
 def _range(label: str, x: Array, motion: str, guesses: list[str]) -> dict[str, Any]:
@@ -255,5 +271,8 @@ def _law(axis: str, columns: Mapping[str, Any], guesses: list[str]) -> dict[str,
     if "reference" in columns:
         guesses.append(f"{axis}: a position servo, because a reference and no force was recorded")
         return {"kind": "position"}
-    guesses.append(f"{axis}: undriven, because neither reference nor force was found")
+    guesses.append(
+        f"{axis}: undriven, because neither reference nor force was found; of a body that is let go state `mass`: 1.0 "
+        "tells its forces for each kg (kg m^2)"
+    )
     return {"kind": "none"}

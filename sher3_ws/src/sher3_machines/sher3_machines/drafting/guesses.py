@@ -69,7 +69,8 @@ def clock_of(tables: Tables, guesses: list[str]) -> str:
         remedy="name it so (--names t,q,i names all columns in order), or state the rate of the samples, Hz: --rate "
         "500 (`time: {rate: 500}` in a description; a column of a matrix is `time: {column: data, index: 0}`); a "
         "table without a time is of another kind: targets and readings `kind: positioning`, known loads and readings "
-        "`kind: load_cell`, wrenches in orientations `kind: force_sensor`, postures with measured poses `kind: arm`",
+        "`kind: load_cell`, wrenches in orientations `kind: force_sensor`, postures with measured poses `kind: arm`; "
+        "there is none of a force over speed or travel, and of a sensor of several components in counts",
     )
 
 

@@ -22,7 +22,8 @@ def vocabulary(text: str) -> frozenset[str]:
 
 POSITION = vocabulary(
     "position positions pos posn q qpos theta angle angles ang encoder enc lage weg winkel qm x dist displacement "
-    "displ stroke gap hub verschiebung schrittzähler steps schritte posición posicion posição posizione ángulo angulo"
+    "displ stroke gap hub verschiebung schrittzähler steps schritte thetam posición posicion posição posizione ángulo "
+    "angulo"
 )
 VELOCITY = vocabulary(
     "velocity velocities vel speed qd dq omega qdot qvel gyro drehzahl geschwindigkeit rate dot thetadot xdot "
@@ -43,9 +44,9 @@ SECOND = vocabulary(
 )
 IGNORED = vocabulary(
     "acceleration acc accel qdd ddq qddot ddot thetaddot xddot error err bus supply battery versorgung power leistung "
-    "energy tcp pose cartesian ee eef execution main"
+    "energy tcp pose cartesian ee eef execution main frequency freq frequenz"
 )
-"""What is no signal of an axis: derivatives, supplies, and what the hand of an arm does."""
+"""What is no signal of an axis: derivatives, supplies, frequencies, and what the hand of an arm does."""
 TEMPERATURE = vocabulary("temperature temperatures temp temps temperatur")
 APPLIED = vocabulary("hung applied external disturbance weight brake bremsmoment last")
 """A force from outside that is known, where the column has the unit of one."""
@@ -67,10 +68,12 @@ TIME = vocabulary(
     "t time stamp timestamp timestamps timestep zeit tiempo temps tempo date datetime utc received elapsed clock"
 )
 COUNTERS = vocabulary("sample samples index idx frame step n nr row")
-FORCES = ("%", "A", "mA", "N", "kN", "N*m", "mN*m")
+PLACELESS = ("A", "mA", "N", "kN", "mN", "gf", "kgf", "lbf", "N*m", "mN*m", "V", "mV")
+"""Units that no place has, whatever its name: `q-axis [A]` is a current."""
+FORCES = ("%", *PLACELESS[:-2])
 """Units of an effort."""
-DRIVES = (*FORCES, "V", "mV", "1")
-"""Units of what a drive is told, where it is no place."""
+SHARES = ("%", "1")
+"""Units of what a drive is told, where its name speaks of no place."""
 PLACES = ("m", "cm", "mm", "um", "rad", "mrad", "deg", "arcmin", "arcsec", "rev", "count")
 """Units of a position."""
 CLEAR = vocabulary("deg degree degrees rad radians rpm mm ms msec millis us usec micros sec secs seconds")
@@ -94,6 +97,8 @@ SHORT = vocabulary("x i u n d q t")
 """Words of one letter: beside a longer word for the quantity they are the name of the axis."""
 FORCEFUL = EFFORT | CURRENT | COMMAND | APPLIED
 """Words beside which a single letter at the end is a unit: `force_N`, `iq_A`, `u_V`; `enc_A` is the encoder of A."""
+SIDES = re.compile(r"(?i)(?<![a-z])(q|theta)_(?=[ml](?![a-z0-9]))")
+"""A place of the motor or of the link, as textbooks of elastic joints write them: `q_m`, `theta_l`."""
 PREFIXES = re.compile(r"(soll|ist)(?=\w{3})|[lr](?=\w{4})")
 """What is joined to a quantity: who asks or measures in German, `Sollposition`, or the side, `Rspeed`."""
 ASKED_SPEED = "asked speed"
@@ -140,13 +145,13 @@ def named(column: str) -> Named:
     if unit == "degC" or set(words) & TEMPERATURE:
         return Named("temperature", "_".join(w for w in rest if w not in TEMPERATURE), unit or "degC")
     signal = _signal(set(used) | (set(words) & SECOND), {w for w in table if w in ASKED | COMMAND})
-    if signal == "load" and unit in DRIVES and unit != "1":
-        signal = None  # a bridge in mV, no place
+    if signal in ("position", "load") and unit in PLACELESS:
+        signal = "effort" if unit in FORCES else None  # a bridge in mV, no place
     if signal == "position" and unit in VELOCITIES:
         signal = "velocity"
     if signal == "reference" and unit in VELOCITIES:
         signal = ASKED_SPEED
-    if signal == "reference" and unit in DRIVES and not set(words) & POSITION:
+    if signal == "reference" and (unit in PLACELESS or (unit in SHARES and not set(words) & POSITION)):
         signal = "command"
     rest = rest or [w for w in table if w not in WORDS and w not in PLAIN and w not in SECOND] or table
     if signal is None and not set(words) & IGNORED:
@@ -180,7 +185,7 @@ def words_of(text: str) -> list[str]:
 
     A word behind the capitals of a make is one too: `EPOSPosition`.
     """
-    text = text.replace("set_point", "sp").replace("Set Point", "sp")
+    text = SIDES.sub(r"\1", text.replace("set_point", "sp").replace("Set Point", "sp"))
     parted = re.sub(
         r"(?<=[a-z])(?=[A-Z])|(?<=[A-Z]{2})(?=[A-Z][a-z]{2})|(?<=[A-Za-z])(?=\d)|(?<=\d)(?=[A-Za-z])", " ", text
     )
@@ -213,6 +218,7 @@ def bare_and_unit(name: str) -> tuple[str, str | None]:
         return name, None
     said, words = spelled(last), set(words_of(head))
     letter = len(last) == 1 and last.isupper() and bool(words & FORCEFUL)
+    letter = letter or (last == "V" and bool(words & POSITION))
     letter = letter or (last == "m" and bool(words & SLIDING)) or (last == "s" and bool(words & TIME))
     stated = head.endswith("_in") or letter or (len(last) > 1 and not last.isdigit())
     known = head and said in UNITS and stated

@@ -26,6 +26,7 @@ from sher3_machines.drafting.names import (
 )
 from sher3_machines.intake.spelling import bare, table_of
 from sher3_machines.intake.tables import SAMPLES, Tables
+from sher3_machines.intake.units import UNITS
 
 SIGNALS = ("position", "reference", "command", "effort", "load", "applied", "temperature", "velocity")
 """Signals of an axis that a draft looks for, in the order they are written."""
@@ -37,6 +38,8 @@ ASKED_FOR = ("reference", ASKED_SPEED)
 """Signals that may stay as they are all along."""
 LAST_NUMBER = re.compile(r"(?P<stem>.*?)(?P<number>\d+)")
 """Name of an axis that ends in a number."""
+ROUNDED = 1e-5
+"""Share of the travel by which two columns of one reading differ at most: they were printed with five digits."""
 EVERY = "*"
 """Axis of a signal that all axes share: one speed is asked of both wheels."""
 
@@ -195,6 +198,28 @@ def together(placed: Mapping[Place, tuple[str, str]]) -> tuple[dict[str, dict[st
         if signal not in SIGNALS or home is None or groups[home].setdefault(signal, place) != place:
             left.append(place[0])
     return groups, list(dict.fromkeys(left))
+
+
+def once(groups: dict[str, dict[str, Place]], tables: Tables, guesses: list[str]) -> dict[str, dict[str, Place]]:
+    """Return the axes without those whose position is that of another one in another unit: rad, and turns."""
+    out: dict[str, dict[str, Place]] = {}
+    for axis, signals in groups.items():
+        place = signals["position"]
+        same = next((s["position"] for s in out.values() if _same(place, s["position"], tables)), None)
+        if same is None:
+            out[axis] = signals
+        else:
+            guesses.append(f"{place[0]!r} is {same[0]!r} in another unit, and not used")
+    return out
+
+
+def _same(place: Place, other: Place, tables: Tables) -> bool:
+    """Return whether two columns that move are one reading, each in a unit that its name states."""
+    units = [named(p[0]).unit for p in (place, other)]
+    if None in units or units[0] == units[1]:
+        return False
+    x, y = (values_of(p, tables) * UNITS[str(unit)] for p, unit in zip((place, other), units, strict=True))
+    return len(x) == len(y) and bool(np.ptp(x) > 0.0 and np.ptp(x - y) < ROUNDED * np.ptp(x))
 
 
 def _rank(place: Place, table: str) -> tuple[bool, bool, int, bool]:

@@ -24,6 +24,8 @@ WITHOUT = re.compile(r"c\d+|")
 MOST = 12
 """Columns of a matrix that is taken for a table at most."""
 
+LEVELS = 3
+"""Rows of a table of readings at least."""
 POSITION, VELOCITY, ACCELERATION, EFFORT = "position", "velocity", "acceleration", "effort"
 """Names of the blocks of a table of a robot."""
 
@@ -31,12 +33,12 @@ Place = tuple[str, int | None]
 """A column, and the entry of it where each sample is a list."""
 
 
-def places_of(tables: Tables) -> list[Place]:
-    """Return the columns and the entries of matrices with most samples, in the order of the file."""
+def places_of(tables: Tables, least: int = SAMPLES) -> list[Place]:
+    """Return the columns and the entries of matrices with most samples, `least` or more, in the order of the file."""
     most = max((len(x) for x in tables.values()), default=0)
     found: list[Place] = []
     for name, x in tables.items():
-        if len(x) == most >= SAMPLES and (x.ndim == 1 or (x.ndim == 2 and x.shape[1] <= MOST)):
+        if len(x) == most >= least and (x.ndim == 1 or (x.ndim == 2 and x.shape[1] <= MOST)):
             found += [(name, None)] if x.ndim == 1 else [(name, i) for i in range(x.shape[1])]
     return found
 
@@ -47,7 +49,7 @@ def given(names: Sequence[str], tables: Tables) -> dict[Place, str]:
     Raises:
         MachineError: there are more or fewer names than columns, or two are alike.
     """
-    places = places_of(tables)
+    places = places_of(tables, LEVELS)
     told = [name for name in names if name]
     if len(names) != len(places) or len(set(told)) < len(told):
         raise MachineError(

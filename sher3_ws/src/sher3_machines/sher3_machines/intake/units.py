@@ -69,7 +69,7 @@ SPELLINGS = {
     "arcsec": "arcsecond arcseconds asec as",
     "rev": "turn turns revolution revolutions revs rot",
     "deg/s": "°/s dps degrees/s deg/sec",
-    "rev/s": "turns/s turn/s rps",
+    "rev/s": "turns/s turn/s rps Hz",
     "rad/s": "rad/sec rads/s",
     "N": "newton newtons",
     "gf": "g gram grams gramforce",

@@ -230,3 +230,22 @@ def test_a_motor_of_many_turns_has_a_draft_that_can_be_imported(tmp_path, header
     assert load_description(tmp_path / "a.yaml").axes[0].range == (-198.0, 198.0)
     import_case([tmp_path / "a.csv"], tmp_path / "a.yaml", tmp_path / "case")
     assert "range" not in written(tmp_path, "t,q [rad]", TIME, np.sin(TIME)).text.replace("# guessed", "")
+
+
+@pytest.mark.parametrize(
+    ("drive", "outside", "taken"),
+    [("tau [Nm]", "brake torque [Nm]", True), ("tau [Nm]", "weight [g]", False), ("i [A]", "brake torque [Nm]", False)],
+)
+def test_a_force_from_outside_is_one_of_the_kind_of_the_drives(tmp_path, drive, outside, taken):
+    wave = np.sin(TIME)
+    found = written(tmp_path, f"t,q [rad],{drive},{outside}", TIME, wave, np.cos(TIME), np.sin(3.0 * TIME))
+    assert ("applied:" in found.text) == taken
+    assert taken or f"{outside!r} is not used, because it is in" in found.text
+
+
+def test_a_speed_in_hertz_turns(tmp_path):
+    """Drives give the speed of a motor in turns a second, and call that hertz."""
+    found = written(
+        tmp_path, "time [s],velocity setpoint [Hz],velocity measured [Hz]", TIME, np.cos(TIME), np.sin(TIME)
+    )
+    assert "motion: rotary" in found.text and found.text.count("unit: rev/s") == 2

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from sher3_machines.drafting.roles import placed, together
+from sher3_machines.drafting.roles import once, placed, together
 
 T = np.arange(0.0, 4.0, 0.002)
 
@@ -40,3 +40,18 @@ def test_families_that_count_from_zero_and_from_one_are_the_same_joints():
     found = signals_of("q0", "q1", "q2", "tau1", "tau2", "tau3")
     assert {axis: x["effort"] for axis, x in found.items()} == {"0": "tau1", "1": "tau2", "2": "tau3"}
     assert signals_of("q0", "q1", "q2", "tau1", "tau2")["1"]["effort"] == "tau1"
+
+
+def test_one_reading_in_two_units_is_one_axis():
+    """A drive reports its joint in rad and its motor in turns; a second joint that moves alike stays one."""
+    q = np.sin(T)
+    tables = {"a1 position [rad]": q, "c1 position [rev]": q / (2.0 * np.pi), "b1 position [rev]": q}
+    groups, _ = together(placed(tables, None, guesses := []))
+    assert list(once(groups, tables, guesses)) == ["a_1", "b_1"]
+    assert guesses == ["'c1 position [rev]' is 'a1 position [rad]' in another unit, and not used"]
+
+
+@pytest.mark.parametrize(("motor", "link"), [("theta_m", "theta_l"), ("q_m", "q_l")])
+def test_motor_and_link_of_an_elastic_joint_are_one_axis(motor, link):
+    (found,) = signals_of(motor, link, "tau_m").values()
+    assert found == {"position": motor, "load": link, "effort": "tau_m"}

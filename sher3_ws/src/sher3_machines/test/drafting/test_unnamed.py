@@ -58,3 +58,13 @@ def test_columns_of_which_nothing_is_told_are_refused_with_a_remedy(tmp_path):
     np.savetxt(tmp_path / "a.csv", np.random.default_rng(0).normal(size=(99, 2)), delimiter=",")
     with pytest.raises(MachineError, match="--names"):
         draft_of(tmp_path / "a.csv", rate=10.0)
+
+
+def test_a_short_table_of_readings_can_be_named(tmp_path):
+    load = np.arange(1.0, 9.0)
+    np.savetxt(
+        tmp_path / "a.csv", np.column_stack([load, 3.0 * load, 0.0 * load]), delimiter=",", header="M,d,e", comments=""
+    )
+    described = parse_yaml(draft_of(tmp_path / "a.csv", names=("weight_kg", "reading", "")).text)
+    assert described["kind"] == "load_cell"
+    assert (described["applied"]["column"], described["reading"]["column"]) == ("M", "d")

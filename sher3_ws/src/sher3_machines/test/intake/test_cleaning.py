@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from sher3_machines import MachineError
-from sher3_machines.intake.mending.parts import cut
+from sher3_machines.intake.mending.parts import MOST, cut
 from sher3_machines.intake.mending.readings import glitches, known_readings, longest_run
 from sher3_machines.intake.mending.stamps import even_stamps
 
@@ -81,3 +81,11 @@ def test_a_log_is_cut_where_its_clock_has_a_hole_or_jumps_back():
 def test_the_longest_run_of_a_mask():
     assert longest_run(np.array([True, True, False, True, True, True])) == 3
     assert longest_run(np.zeros(4, dtype=bool)) == 0
+
+
+def test_of_very_many_parts_the_longest_are_judged():
+    """A log of 66 holes is one of 67 records, of which 50 are judged; where the clock is nothing but holes, none."""
+    time = 0.01 * np.arange(6700.0) + np.repeat(np.arange(67.0), 100)
+    parts, note = cut("log", {"t": time}, "t")
+    assert len(parts) == MOST and "cut into 50 parts" in note and "1700 samples are in none of them" in note
+    assert len(cut("log", {"t": np.repeat(time, 10)[::7] + 10.0 * np.arange(len(time) * 10 // 7 + 1)}, "t")[0]) == 1

@@ -111,3 +111,19 @@ def test_a_row_for_each_signal_is_turned(tmp_path, signals):
     found = tables(tmp_path, "\n".join(",".join(f"{x:g}" for x in row) for row in rows))
     assert list(found) == [f"c{i}" for i in range(signals)] and (found["c2"] == rows[2]).all()
     assert len(tables(tmp_path, "\n".join("1,2,3,4" for _ in range(3)))) == 4
+
+
+def test_decimal_commas_between_tabs_part_nothing(tmp_path):
+    """Each line has as many commas, as the lines of a table that a spreadsheet took for one column of text have."""
+    found = tables(tmp_path, "".join(f"{0.01 * k:.2f}\t{k / 7:.6f}\n".replace(".", ",") for k in range(40)))
+    assert found["c0"][3] == pytest.approx(0.03) and found["c1"][3] == pytest.approx(0.428571)
+
+
+def test_a_unit_behind_a_stroke_is_one(tmp_path):
+    """A quantity over its unit (ISO 80000-1); strokes that part tables stay."""
+    assert list(tables(tmp_path, "Time/s,Angle/rad,AngVel/rad/s\n0,1,2\n1,2,3\n")) == [
+        "Time [s]",
+        "Angle [rad]",
+        "AngVel [rad/s]",
+    ]
+    assert list(tables(tmp_path, "temp/min,temp/max\n0,1\n1,2\n")) == ["temp/min", "temp/max"]

@@ -13,7 +13,9 @@ LONGEST_HOLE = 10.0
 SHORTEST = 20
 """Samples of a part below which it is left out."""
 MOST = 50
-"""Parts beyond which a log is no record that was cut, but has no clock."""
+"""Parts that are judged at most, the longest."""
+HELD = 0.5
+"""Share of the samples that those parts hold at least: else it is no record that was cut, but has no clock."""
 MARK = ".part"
 """What parts the name of a run from the number of its part."""
 
@@ -38,9 +40,10 @@ def cut(name: str, tables: Tables, clock: str | None) -> tuple[dict[str, Tables]
         return {name: tables}, ""
     edges = [0, *(int(i) + 1 for i in np.flatnonzero(breaks)), len(stamps)]
     spans = [(a, b) for a, b in pairwise(edges) if b - a >= SHORTEST]
-    if not spans or len(spans) > MOST:
-        return {name: tables}, ""
+    spans = sorted(sorted(spans, key=lambda span: span[0] - span[1])[:MOST])
     left = len(stamps) - sum(b - a for a, b in spans)
+    if left > (1.0 - HELD) * len(stamps):
+        return {name: tables}, ""
     parts = {
         f"{name}{MARK}{i + 1}": {n: x[a:b] if len(x) == len(stamps) else x for n, x in tables.items()}
         for i, (a, b) in enumerate(spans)

@@ -75,6 +75,7 @@ def _one_table(rows: Rows, comma: bool, names: Sequence[str]) -> dict[str, Array
         header = list(names) if len(names) == len(rows[0]) else [f"c{i}" for i in range(len(rows[0]))]
     else:
         header, rows = [cell.strip() for cell in rows[0]], rows[1:]
+    header = _with_strokes(header)
     if rows and _are_units(rows[0]):
         header, rows = _with_units(header, rows[0]), rows[1:]
     out: dict[str, Array] = {}
@@ -160,6 +161,17 @@ def _with_units(header: Sequence[str], units: Sequence[str]) -> list[str]:
     cells = ["" if unit == "#" else unit for unit in cells]  # a number of something has no unit
     names = [name or ("time" if spelled(unit) in TIME_UNITS else "") for name, unit in zip(header, cells, strict=False)]
     return [f"{name} [{unit}]" if unit else name for name, unit in zip(names, cells, strict=False)]
+
+
+def _with_strokes(header: Sequence[str]) -> list[str]:
+    """Return names with units behind a stroke, `Angle/rad` (ISO 80000-1), as `Angle [rad]`.
+
+    Where a stroke of the header parts no unit, strokes part tables.
+    """
+    parted = [name.partition("/") for name in header]
+    if not all(name and spelled(unit) in UNITS for name, stroke, unit in parted if stroke):
+        return list(header)
+    return [f"{name} [{unit}]" if stroke else name for name, stroke, unit in parted]
 
 
 def _column(cells: Sequence[str], comma: bool) -> Array | None:

@@ -87,13 +87,14 @@ def _ended(lines: list[str], mark: str | None) -> list[str]:
 def _without_remarks(lines: list[str], mark: str | None) -> list[str]:
     """Return the lines of a table that a spreadsheet took for one column of text, without the columns beside it.
 
-    Such a table has semicolons or tabs in its cells and commas behind them, as many in each line, its titles included;
-    between them stand remarks.
+    Such a table has semicolons or tabs in its first cell and commas behind them, as many in each line, its titles
+    included; between them stand remarks. Where tabs stand behind commas too, the commas are decimal ones.
     """
     if mark not in (";", "\t") or not all("," in line for line in (lines[0], lines[-1])):
         return lines
     rows = list(csv.reader(lines))
-    return [row[0] for row in rows] if len({len(row) for row in rows}) == 1 else lines
+    beside = any(mark in cell for row in rows for cell in row[1:])
+    return lines if beside or len({len(row) for row in rows}) > 1 else [row[0] for row in rows]
 
 
 def _quoted(line: str) -> str:
