@@ -99,6 +99,8 @@ FORCEFUL = EFFORT | CURRENT | COMMAND | APPLIED
 """Words beside which a single letter at the end is a unit: `force_N`, `iq_A`, `u_V`; `enc_A` is the encoder of A."""
 SIDES = re.compile(r"(?i)(?<![a-z])(q|theta)_(?=[ml](?![a-z0-9]))")
 """A place of the motor or of the link, as textbooks of elastic joints write them: `q_m`, `theta_l`."""
+WEIGHED = vocabulary("weight weights mass masses load force gewicht gewichte masse kraft last")
+"""Words beside which a `g` at the end is a gram."""
 PREFIXES = re.compile(r"(soll|ist)(?=\w{3})|[lr](?=\w{4})")
 """What is joined to a quantity: who asks or measures in German, `Sollposition`, or the side, `Rspeed`."""
 ASKED_SPEED = "asked speed"
@@ -218,7 +220,7 @@ def bare_and_unit(name: str) -> tuple[str, str | None]:
         return name, None
     said, words = spelled(last), set(words_of(head))
     letter = len(last) == 1 and last.isupper() and bool(words & FORCEFUL)
-    letter = letter or (last == "V" and bool(words & POSITION))
+    letter = letter or (last == "V" and bool(words & POSITION)) or (last == "g" and bool(words & WEIGHED))
     letter = letter or (last == "m" and bool(words & SLIDING)) or (last == "s" and bool(words & TIME))
     stated = head.endswith("_in") or letter or (len(last) > 1 and not last.isdigit())
     known = head and said in UNITS and stated

@@ -10,12 +10,10 @@ import numpy as np
 from sher3_diagnosis.channel import Array
 from sher3_machines.drafting.draft import written
 from sher3_machines.drafting.names import bare_and_unit, named, tells_time, vocabulary, words_of
-from sher3_machines.intake.columns import IN_HEADER
 from sher3_machines.intake.fields import Column
 from sher3_machines.intake.kind import Draft
 from sher3_machines.intake.spelling import bare
 from sher3_machines.intake.tables import Tables
-from sher3_machines.intake.units import spelled
 
 from sher3_static.readings import LACKING, as_weight
 
@@ -38,7 +36,7 @@ def loads_of(tables: Tables) -> tuple[str, str] | None:
     flat = {n: x for n, x in tables.items() if x.ndim == 1 and np.isfinite(x).mean() >= 1.0 - LACKING}
     if any(tells_time(n) for n in tables):
         return None
-    told = [n for words in (STATED, FORCE) for n in flat if words & set(words_of(_name_and_unit(n)[0]))]
+    told = [n for words in (STATED, FORCE) for n in flat if words & set(words_of(bare_and_unit(bare(n))[0]))]
     for load in dict.fromkeys(told):
         x = flat[load]
         for other, y in flat.items():
@@ -60,7 +58,8 @@ def draft_cell(path: Path, tables: Tables) -> Draft | None:
         return None
     load, read = found
     guesses = ["a load cell: a table of known loads and what was read; a record in time needs a column named t or time"]
-    said = _name_and_unit(load)[1]
+    said = bare_and_unit(bare(load))[1]
+    said = said if said in LOADS else None
     applied = Column(column=load, unit=said or "N")
     why = "its name says so" if said else "nobody states it"
     guesses.append(f"loads are {load!r}, in {applied.unit}, because {why}")
@@ -86,12 +85,3 @@ def _follows(x: Array, y: Array) -> bool:
     """Return whether one of two columns reads the other, of enough different loads."""
     moves = len(np.unique(x)) >= LEVELS and np.ptp(y) > 0.0
     return bool(moves and abs(np.corrcoef(x, y)[0, 1]) > FOLLOWS)
-
-
-def _name_and_unit(column: str) -> tuple[str, str | None]:
-    """Return a column's name, and the unit of a load: in brackets, or the last word of the name."""
-    last = bare(column)
-    match = IN_HEADER.fullmatch(last)
-    head, _, tail = last.rpartition("_" if "_" in last else " ")
-    name, unit = (match["name"], spelled(match["unit"])) if match else (head, spelled(tail))
-    return (name, unit) if name and unit in LOADS else (bare_and_unit(last)[0], None)
