@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from sher3_diagnosis.verdict import Verdict
 from sher3_export.targets.mjcf import Mjcf
 from sher3_export.targets.mjcf_whole import whole
+from sher3_export.targets.sdf import Sdf
 from sher3_export.targets.urdf import Urdf
 from sher3_export.writing import export
 from sher3_export.xml_file import parse_xml
@@ -15,8 +16,8 @@ from sher3_export.xml_file import parse_xml
 from sher3_public.errors import InputError
 from sher3_public.models import Source
 
-ROOTS = {kind.name: kind.root_tag for kind in (Mjcf, Urdf)}
-"""Targets that are written into the model that was given, and the root of their XML."""
+ROOTS = {kind.name: kind.root_tag for kind in (Mjcf, Urdf, Sdf)}
+"""Targets that are written into a model of their own, and the root of their XML; no diagnosis is given an SDF."""
 
 
 @dataclass(frozen=True)
@@ -44,6 +45,8 @@ def corrected(verdict: Verdict, source: Source | None, to: str = "") -> Correcte
     root = None
     if target in ROOTS and (source is None or target != own or source.text is None):
         remedy = "give the model as a path, a text or an MjSpec of that format, or use to='yaml'"
+        if target == Sdf.name:
+            remedy = "write `verdict.to_json()` to a file, and run `sher3 gap export FILE --to sdf --model MODEL.sdf`"
         given = "an MjModel" if source is not None and source.text is None else own
         raise InputError(f"{target} is written into the model that was given", value=given, remedy=remedy)
     if own in ROOTS and source is not None and source.text is not None:

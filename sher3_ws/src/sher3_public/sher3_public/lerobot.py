@@ -15,6 +15,7 @@ from sher3_public.answer import Answer
 from sher3_public.arrays.stating import Stated
 from sher3_public.cases import case_of_arrays, case_of_tables
 from sher3_public.errors import InputError
+from sher3_public.models import source_of
 from sher3_public.records import Array, Arrays
 
 STATE, ACTION = "observation.state/", "action/"
@@ -44,7 +45,8 @@ def from_lerobot(
         model: MJCF or URDF as `diagnose` takes it; None: servos by themselves.
         unit: of actions and states, `rad` or `deg`; default guessed, since the data set does not say.
         episodes: numbers of the episodes to take; default all.
-        joints: the model's joint of each entry of the state; default guessed, see `diagnose`.
+        joints: the model's joint of each entry of the state; default by the names of the data set where the model has
+            them all, else guessed, see `diagnose`.
         tags: what differs between episodes, as `diagnose` takes it.
         without: ids of effects that are left out of the library.
 
@@ -64,8 +66,11 @@ def from_lerobot(
     if model is None:
         case = case_of_tables(None, runs, None, Stated(), tags)
     else:
-        case = case_of_arrays(model, [_arrays(tables) for tables in runs], Stated(tuple(joints)), tags)
+        stated = Stated(tuple(joints)) if joints else _named(source_of(model).bodies.joints, runs[0], guesses)
+        case = case_of_arrays(model, [_arrays(tables) for tables in runs], stated, tags)
     notes = list(case.notes)
+    if not episodes and len(runs) < found.total:
+        notes.append(f"{len(runs)} of the data set's {found.total} episodes are in its folder")
     if found.nominal:
         notes.append(f"stamps are the frame's number over {found.rate:g} Hz: they hide what the control loop missed")
     return Answer.of(replace(case, guesses=[*guesses, *case.guesses], notes=notes), tuple(without))
@@ -77,6 +82,15 @@ def _guessed(found: DataSet, guesses: list[str]) -> str:
     unit = "deg" if reached > MOST_TURNS * 2.0 * np.pi else "rad"
     guesses.append(f"actions and states are in {unit}, because values reach {reached:.4g}; unit='rad' or 'deg'")
     return unit
+
+
+def _named(known: Collection[str], tables: Mapping[str, Array], guesses: list[str]) -> Stated:
+    """Return the joints of states and actions by the names of the data set; nothing where the model lacks any."""
+    state, action = ([n[len(w) :].removesuffix(".pos") for n in tables if n.startswith(w)] for w in (STATE, ACTION))
+    if not set(state) <= set(known):
+        return Stated()
+    guesses.append(f"joints are those of the data set's names: {', '.join(state)}")
+    return Stated(tuple(state), controls=tuple(action) if set(action) == set(state) else ())
 
 
 def _arrays(tables: Mapping[str, Array]) -> Arrays:

@@ -55,6 +55,8 @@ def test_what_cannot_be_written_is_said(answer, tmp_path):
         answer.report(tmp_path / "nowhere" / "r.html")
     with pytest.raises(gap.InputError, match="written into the model that was given"):
         answer.corrected(to="urdf")
+    with pytest.raises(gap.InputError, match="--to sdf --model"):
+        answer.corrected(to="sdf")
 
 
 def test_rows_and_frame(answer, monkeypatch):

@@ -132,3 +132,15 @@ def test_with_a_model_the_friction_of_a_joint_is_found(tmp_path, log):
     (cause,) = gap.from_lerobot(folder, log.xml, unit="rad").causes
     assert (cause.effect, cause.actuator) == ("coulomb_friction", "shoulder")
     assert cause.parameters["force"].value == pytest.approx(1.2, rel=0.1)
+
+
+def test_joints_are_taken_by_their_names_where_the_model_has_them(tmp_path, log):
+    """In another order than the model's; of three episodes that the data set has, one is in its folder."""
+    rate, turned = 1.0 / np.diff(log.time)[0], (None, log.ctrl[:, ::-1], log.qpos[:, ::-1])
+    folder = write_data_set(tmp_path / "set", "v3.0", rate, ["shoulder", "turn"], [turned])
+    info = json.loads((folder / "meta/info.json").read_text())
+    (folder / "meta/info.json").write_text(json.dumps({**info, "total_episodes": 3}))
+    answer = gap.from_lerobot(folder, log.xml, unit="rad")
+    assert [(c.effect, c.actuator) for c in answer.causes] == [("coulomb_friction", "shoulder")]
+    assert "joints are those of the data set's names: shoulder, turn" in answer.guessed
+    assert "1 of the data set's 3 episodes are in its folder" in answer.notes

@@ -89,6 +89,11 @@ def test_units_that_cannot_be(log):
         gap.diagnose(MODEL, time, np.degrees(control), np.degrees(position))
 
 
+def test_a_handful_of_samples_is_said(log):
+    with pytest.raises(InputError, match="too few samples; value 10; limit 20"):
+        gap.diagnose(MODEL, *(x[:10] for x in log))
+
+
 def test_noise_that_hides_the_forces_is_no_unit(log):
     """In degrees all forces are smaller, those of the noise too: that speaks for no unit."""
     time, control, position = log

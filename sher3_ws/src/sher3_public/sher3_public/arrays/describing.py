@@ -19,7 +19,7 @@ from sher3_public.arrays.own_effort import simulated
 from sher3_public.arrays.stating import Stated
 from sher3_public.errors import InputError
 from sher3_public.models import Source
-from sher3_public.records import Array, Arrays
+from sher3_public.records import LEAST, Array, Arrays
 
 LEAST_RESOLUTION = 1e-9
 """Resolution of an encoder whose readings neither step nor scatter, rad or m: a simulator's own numbers."""
@@ -41,6 +41,9 @@ def described(source: Source, runs: Sequence[Arrays], stated: Stated) -> Describ
         InputError: the arrays do not fit the joints of the model, or cannot be what they would be taken for.
     """
     runs = [stated.in_si(run) for run in runs]
+    most = max(len(run.time) for run in runs)
+    if most < LEAST:
+        raise InputError("too few samples", value=most, limit=LEAST, remedy="record some seconds of motion")
     plausible.stamps(runs[0].time)
     guesses: list[str] = []
     runs = [without_free(source, run, stated.joints, guesses) for run in runs]

@@ -38,12 +38,14 @@ class DataSet:
         robot: type of robot, as the data set names it.
         rate: frames per second, Hz.
         episodes: name -> tables: `timestamp` (n,), and `FEATURE/JOINT.pos` (n,) for every joint.
+        total: episodes that it says it has.
         nominal: whether every stamp is its frame's number over the rate: such a clock hides what its loop missed.
     """
 
     robot: str
     rate: float
     episodes: Mapping[str, Mapping[str, Array]]
+    total: int
     nominal: bool
 
 
@@ -85,7 +87,8 @@ def read_data_set(path: Path, wanted: Collection[int] = ()) -> DataSet:
         have = np.unique(rows["episode_index"]).astype(int)
         limit = f"{have[0]} to {have[-1]}" if len(have) else "none has rows"
         raise MachineError(f"{path}: no such episode", value=sorted(missing), limit=limit, remedy="correct `episodes`")
-    return DataSet(str(info.get("robot_type") or "robot"), float(info["fps"]), found, nominal)
+    total = int(info.get("total_episodes") or len(found))
+    return DataSet(str(info.get("robot_type") or "robot"), float(info["fps"]), found, total, nominal)
 
 
 def _info(path: Path) -> dict[str, Any]:
@@ -140,7 +143,8 @@ def _rows(path: Path, columns: list[str]) -> dict[str, Array]:
         tables = [parquet.read_table(file, columns=columns) for file in files]
         return {name: np.concatenate([_plain(table[name]) for table in tables]) for name in columns}
     except (OSError, KeyError, ValueError) as error:  # pyarrow's own errors are of these
-        raise MachineError(f"{path}: cannot be read", value=str(error)[:200], remedy="check the data set") from error
+        value, need = str(error).splitlines()[0][:200], f"the columns {', '.join(columns)} in every file"
+        raise MachineError(f"{path}: cannot be read", value=value, limit=need, remedy="check the data set") from error
 
 
 def _plain(column: Any) -> Array:
