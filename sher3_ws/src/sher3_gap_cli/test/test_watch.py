@@ -5,9 +5,11 @@ import time
 
 import numpy as np
 import pytest
+from sher3_gap_cli.app import app
 from sher3_gap_cli.watch.judged import OK, STALE, WARN, judged, of_actuators
 from sher3_gap_cli.watch.trajectory import Point, set_points
 from sher3_gap_cli.watch.window import Window
+from typer.testing import CliRunner
 
 ARM = (
     '<robot name="a"><link name="base"/><link name="arm"><inertial><origin xyz="0.2 0 0"/><mass value="2"/>'
@@ -107,6 +109,22 @@ def test_a_command_of_joints_is_put_in_the_order_of_the_actuators():
     )
     assert of_actuators(source_of(xml).bodies, ("a", "b"), np.array([[1.0, 2.0]])).tolist() == [[2.0, 1.0]]
     assert of_actuators(source_of(ARM).bodies, ("turn",), np.array([[1.0]])) is None
+
+
+def test_what_is_waited_for_is_said():
+    window = Window(["turn", "finger"], seconds=10.0, rate=50.0)
+    assert window.waits_for("/joint_states") == "waiting for joint states on /joint_states"
+    window.state(0.0, ["turn"], [0.0], [])
+    assert "joint states on /arm lack finger: name the joints to watch, --joint" in window.waits_for("/arm")
+    window.state(0.1, ["finger", "turn"], [0.0, 0.0], [])
+    assert window.waits_for("/arm") == "gathering the first 5 s"
+
+
+@pytest.mark.graph
+def test_a_joint_that_the_model_lacks_is_refused(tmp_path):
+    (tmp_path / "arm.urdf").write_text(ARM)
+    result = CliRunner().invoke(app, ["watch", "--model", str(tmp_path / "arm.urdf"), "--joint", "trun"])
+    assert result.exit_code == 2 and "the model has no such joint" in result.output
 
 
 @pytest.mark.graph

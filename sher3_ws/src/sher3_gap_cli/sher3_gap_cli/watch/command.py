@@ -46,6 +46,7 @@ def watch(
 
     Needs the extra `robot`. The graph is that of ROS_DOMAIN_ID. Exit codes: 0 ended by Ctrl-C, 2 the model is wrong.
     """
+    from sher3_public.errors import InputError
     from sher3_public.models import source_of
 
     from sher3_gap_cli.watch.watch_node import WatchNode, run
@@ -53,7 +54,10 @@ def watch(
 
     with reported(as_json):
         source = source_of(model)
-        kept = Window(joint or list(source.bodies.joints), window, rate)
+        known = list(source.bodies.joints)
+        if strange := [name for name in joint or () if name not in known]:
+            raise InputError.unknown("--joint: the model has no such joint", strange[0], known)
+        kept = Window(joint or known, window, rate)
         text = source.text or ""
         topics = (states, command, kind.value, not best_effort)
         run(lambda: WatchNode(text, kept, every, *topics, told_json if as_json else told))

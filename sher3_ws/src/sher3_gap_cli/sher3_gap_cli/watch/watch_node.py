@@ -51,7 +51,8 @@ class WatchNode(Node):
     ) -> None:
         super().__init__("gap_watch")
         self.model, self.window, self.every, self.say = model, window, every, say
-        self.found: list[Status] = [Status("gap", STALE, "waiting for joint states")]
+        self.states = states
+        self.found: list[Status] = []
         self.pool = get_context("spawn").Pool(1, yielding)
         self.running: AsyncResult[list[Status]] | None = None
         self.last = 0.0
@@ -114,6 +115,10 @@ class WatchNode(Node):
         if taken is not None:
             self.running = self.pool.apply_async(judged, (self.model, self.window.joints, tuple(taken)))
             self.last = now
+        waits = [Status("gap", STALE, self.window.waits_for(self.states))]
+        if not self.last and self.found != waits:
+            self.found = waits
+            self.say(waits)
         self.publisher.publish(self._message())
 
     def _message(self) -> Any:

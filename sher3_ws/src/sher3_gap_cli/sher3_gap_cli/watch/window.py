@@ -59,6 +59,7 @@ class Window:
         self.states: deque[State] = deque()
         self.commands: deque[Command] = deque()
         self.heard, self.strange = 0, 0
+        self.lacking: tuple[str, ...] = ()
 
     def due(self, stamp: float) -> bool:
         """Return whether a state of this stamp would be kept."""
@@ -76,6 +77,7 @@ class Window:
         places = {name: i for i, name in enumerate(names)}
         if not set(self.joints) <= set(places) or len(position) < len(names):
             self.strange += 1
+            self.lacking = tuple(name for name in self.joints if name not in places)
             return
         order = [places[name] for name in self.joints]
         efforts = tuple(effort[i] for i in order) if len(effort) == len(names) else ()
@@ -112,6 +114,14 @@ class Window:
         if self.commands:
             return self.commands[-1].values
         return self.states[-1].position if self.states else [0.0] * len(self.joints)
+
+    def waits_for(self, topic: str) -> str:
+        """Return why there is nothing to judge yet; `topic` is that of the joint states."""
+        if self.states:
+            return f"gathering the first {SHORTEST * self.seconds:g} s"
+        if self.lacking:
+            return f"joint states on {topic} lack {', '.join(self.lacking)}: name the joints to watch, --joint"
+        return f"waiting for joint states on {topic}"
 
     def taken(self) -> Taken | None:
         """Return the window; None while it is shorter than half of what is kept."""
