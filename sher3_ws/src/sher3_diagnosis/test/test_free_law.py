@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from sher3_diagnosis.judge.evidence.free_law import linear, loss_left, principal, telling
+from sher3_diagnosis.judge.evidence.free_law import folds, linear, loss_left, principal, telling
 
 RNG = np.random.default_rng(1)
 RUN = np.repeat(np.arange(6), 150)
@@ -26,6 +26,13 @@ def test_noise_is_left_by_everything_and_never_grows():
     noise = RNG.normal(size=(900, 1))
     law, anything = loss_left([OWN, FOREIGN], noise, RUN)
     assert 0.95 * np.mean(noise**2) < anything <= law <= np.mean(noise**2)
+
+
+def test_a_record_alone_is_predicted_from_its_other_pieces():
+    """A slow sweep never comes back to where it was: of two thirds at its end, nobody can tell the first third."""
+    sweep = np.linspace(-1.0, 1.0, 900)[:, None]
+    assert loss_left([sweep], np.sin(9.0 * sweep), np.zeros(900, int))[0] < 0.1
+    assert set(folds(RUN)[:150]) == {0} and len(set(folds(np.zeros(900, int))[:150])) == 3
 
 
 def test_no_inputs_explain_nothing():

@@ -7,7 +7,8 @@ import pytest
 from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.finding import Candidate, Item
 from sher3_diagnosis.judge.calibration.calibration import in_force
-from sher3_diagnosis.judge.level import LEVELS, USUAL, at_level, levels_told
+from sher3_diagnosis.judge.evidence.scales import LEAST_OWN, unexplained
+from sher3_diagnosis.judge.level import LAWFUL, LEVELS, USUAL, at_level, lawful, levels_told
 from sher3_diagnosis.judge.probabilities import judged, judged_together
 from sher3_diagnosis.verdict import Interval
 
@@ -55,3 +56,22 @@ def test_the_odds_over_all_levels_add_up_to_one():
     for j in judged_together([item("a"), item("b")], [Interval(value=0.8)] * 2, in_force(), True):
         assert sum(j.odds.values()) == pytest.approx(1.0)
         assert j.item.numbers["left"] == 0.2
+
+
+@pytest.mark.parametrize("missed", [1.0, 0.5, 0.1])
+def test_the_less_of_what_is_left_no_function_explains_the_likelier_is_a_foreign_law(missed):
+    def odds_of(**told):
+        (found,) = judged_together([item("a", **told)], [Interval(value=0.8)], in_force(), True)
+        return found.outside / found.library
+
+    exponent, even = LAWFUL
+    free = {"law": 0.2 * missed, "anything": 0.2 * missed}  # of 0.2 that are left
+    assert odds_of(**free) == pytest.approx(odds_of() * (even / missed) ** exponent, rel=0.2)  # `foreign` is told too
+    assert lawful(NUMBERS) == 1.0  # where nothing was looked at
+
+
+def test_what_is_left_below_the_floor_is_no_function():
+    """A remainder of 0.01 of the floor's power: what is explained of it is a hundredth at most."""
+    small = NUMBERS | {"left": 0.01, "power": 1.0, "law": 0.01, "anything": 0.0}
+    assert unexplained(small) == pytest.approx(0.99)
+    assert unexplained(small | {"power": 1e4}) == LEAST_OWN

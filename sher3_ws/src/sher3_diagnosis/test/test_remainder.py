@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from sher3_diagnosis.judge.remainder import boosted, ceiling, dominant_frequency, position_period, remainder
+from sher3_diagnosis.judge.remainder import ceiling, dominant_frequency, position_period, remainder
 from sher3_diagnosis.quantify.closure import residual_after
 from toy import AXIS, ToyRun, evidence_of
 
@@ -43,12 +43,6 @@ def test_a_free_function_of_the_inputs_closes_what_depends_on_them():
     assert ceiling(found, AXIS, left(found)) > 0.9
     noise = evidence(lambda q: 0.0 * q)
     assert ceiling(noise, AXIS, left(noise)) == 0.0
-
-
-def test_boosting_fits_a_step_it_has_seen():
-    x = np.linspace(-1.0, 1.0, 500)[:, None]
-    y = np.sign(x[:, 0])
-    assert boosted(x, y, np.array([[-0.5], [0.5]])) == pytest.approx([-1.0, 1.0], abs=0.1)
 
 
 def test_the_words_name_regime_line_period_and_ceiling():

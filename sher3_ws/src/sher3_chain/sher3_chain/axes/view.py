@@ -8,7 +8,7 @@ import numpy as np
 from sher3_diagnosis.channel import Array, Channel, Mask
 from sher3_diagnosis.discover.feature import Quantities, Quantity
 from sher3_diagnosis.filter import EDGE, settled
-from sher3_effects.operators import dahl_turned, second_difference
+from sher3_effects.operators import second_difference
 from sher3_effects.view import NominalAxis
 
 from sher3_chain.chain.view import AROUND_STOP, LEAD_OF_STROKE, SLIP, ChainView, Loads
@@ -26,8 +26,6 @@ SPREAD = 0.5
 REST_SPREADS = 2
 """Samples of the grid by which the filter spreads what friction does at rest, and in motion: 0.8 of a period of the
 cut-off. By one sample a stop of a finely resolved axis still leaves thousands of floors."""
-PAST = (0.003, 0.03, 0.3)
-"""Shares of a range over which a state forgets: what went before within a fine, a usual and a coarse stroke."""
 ENOUGH = 0.5
 """Share of the samples that must be in motion, or away from such reversals, for the others to be left out."""
 
@@ -216,34 +214,17 @@ class AxisView(ChainView):
     def quantities(self, site: str) -> dict[str, Array]:
         """Return quantity, of `sher3_diagnosis.effect.INPUTS`, -> (g, k) columns, as the axis feels them.
 
-        The past of force and path is in Dahl states, which turn over a share of what each goes through. The force is
-        the one that the motion needs; where no mass is known and no force balance judged, the recorded one. Of a body
-        that nothing drives neither it nor the acceleration is a cause: what is judged there is made of them.
+        The force is the one that the motion needs; where no mass is known and no force balance judged, the recorded
+        one. Of a body that nothing drives neither it nor the acceleration is a cause: what is judged is made of them.
         """
-        run = self.run
-        travel = max(float(np.ptp(run.smooth)), self.described.encoder_resolution)
-        turned = [self.sliding(0, share * travel)[run.grid] for share in PAST]
-        felt = {
-            "position": self.position,
-            "velocity": self.velocity,
-            "direction": np.column_stack(turned),
-            "load": self.path.contact_force,
-            "temperature": self.warmth[:, None],
-        }
+        run, felt = self.run, self.travelled(0)
         if run.effort is not None and not run.effort.any():
             return felt
         needed = self.inertial
         if not self.mass and run.effort is not None and run.nominal is None:
             needed = run.to_grid(run.effort)
-        force = np.interp(run.stage_clock, run.stage_clock[run.grid], needed[:, 0])
-        reach = float(np.ptp(force)) or 1.0
-        pace = np.gradient(force, run.period)
-        loops = [dahl_turned(force, pace, share * reach, run.period)[run.grid] for share in PAST]
-        return felt | {
-            "acceleration": self.acceleration,
-            "force": needed,
-            "loading": np.column_stack(loops),
-        }
+        past = self.gone_through(needed[:, 0])
+        return felt | {"acceleration": self.acceleration, "force": needed, "loading": past}
 
     # what discovery reads
 

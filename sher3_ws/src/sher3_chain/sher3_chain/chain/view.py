@@ -34,6 +34,8 @@ CREEPS = 0.01
 TURNS_BY = 4.0
 """Counts by which a turn differs from a stop: fewer are rounding."""
 
+PAST = (0.003, 0.03, 0.3)
+"""Shares of a range over which a state forgets: what went before within a fine, a usual and a coarse stroke."""
 AROUND_STOP = round(EDGE * DECIMATED_RATE)
 """Samples of the residual grid around one at a stop: the filter spoils as much of it as of the ends of a run."""
 MOSTLY = 0.9
@@ -116,6 +118,28 @@ class ChainView(GridView, ABC):
         """Return the motion of a joint."""
         row = self.row(actuator)
         return Motion(self.position[:, row], self.velocity[:, row], float(self.tops[row]), self.joints[row].lead)
+
+    def travelled(self, row: int) -> dict[str, Array]:
+        """Return quantity, of `sher3_diagnosis.effect.INPUTS`, -> (g, k) columns that any joint feels of its motion.
+
+        The past of a path is in Dahl states, which turn over a share of what it goes through; so is that of a force.
+        """
+        run = self.run
+        travel = max(float(np.ptp(run.smooth[:, row])), self.joints[row].encoder_resolution)
+        return {
+            "position": self.position[:, [row]],
+            "velocity": self.velocity[:, [row]],
+            "direction": np.column_stack([self.sliding(row, share * travel)[run.grid] for share in PAST]),
+            "load": self.path.contact_force[:, [row]],
+            "temperature": self.warmth[:, None],
+        }
+
+    def gone_through(self, force: Array) -> Array:
+        """Return (g, 3) Dahl states of a force (g,) on a joint."""
+        run = self.run
+        force = np.interp(run.stage_clock, run.stage_clock[run.grid], force)
+        reach, pace = float(np.ptp(force)) or 1.0, np.gradient(force, run.period)
+        return np.column_stack([dahl_turned(force, pace, share * reach, run.period)[run.grid] for share in PAST])
 
     def moves(self, least: Array) -> Mask:
         """Return (g, n) where each joint moves by more than `least` (n,), m or rad, around a sample of the grid.

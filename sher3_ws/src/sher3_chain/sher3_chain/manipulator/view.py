@@ -279,6 +279,22 @@ class MotionView(ChainView):
         own = [self.position[:, row], velocity, direction, self.inertial[:, row], self.acceleration[:, row]]
         return np.column_stack(own)
 
+    def quantities(self, site: str) -> dict[str, Array]:
+        """Return quantity, of `sher3_diagnosis.effect.INPUTS`, -> (g, k) columns, as a joint feels them."""
+        row = self.row(site)
+        needed = self.inertial[:, [row]]
+        return self.travelled(row) | {
+            "weight": self.path.gravity[:, [row]],
+            "posture": self.position,
+            "acceleration": self.acceleration,
+            "force": needed,
+            "loading": self.gone_through(needed[:, 0]),
+        }
+
+    def everything(self) -> Array:
+        """Return (g, k) everything that was recorded of the whole arm but its efforts."""
+        return np.hstack([self.position, self.velocity, np.sign(self.velocity) * self.moving, self.acceleration])
+
     # what discovery reads
 
     def recorded(self, channel: Channel) -> Quantities:

@@ -13,6 +13,7 @@ from sher3_diagnosis.channel import Array
 from sher3_diagnosis.discover.columns import Columns
 from sher3_diagnosis.discover.feature import Factor, Feature
 from sher3_diagnosis.fit.trees import Growth, boosted
+from sher3_diagnosis.judge.evidence.free_law import crossed
 
 REACHES = (1e-3, 3e-2, 0.3)
 """Displacements over which the direction is remembered, shares of the range of a position."""
@@ -38,18 +39,9 @@ def inputs(columns: Columns) -> list[Feature]:
 
 def predicted(columns: Columns, component: int, folds: Sequence[Sequence[int]]) -> list[Array]:
     """Return what the trees predict of a component in every run, from the runs of the other folds; whitened (N,)."""
-    features = inputs(columns)
-    x = [np.column_stack([columns.at_samples(r, f) for f in features]) for r in range(len(columns.target))]
-    y = [t[:, component] for t in columns.target]
-    out = [np.zeros_like(v) for v in y]
-    for fold in folds:
-        train = [r for r in range(len(x)) if r not in fold]
-        new = boosted(
-            np.vstack([x[r] for r in train]),
-            np.concatenate([y[r] for r in train]),
-            np.vstack([x[r] for r in fold]),
-            GROWTH,
-        )
-        for r, part in zip(fold, np.split(new, np.cumsum([len(y[r]) for r in fold])[:-1]), strict=True):
-            out[r] = part
-    return out
+    features, runs = inputs(columns), range(len(columns.target))
+    x = np.vstack([np.column_stack([columns.at_samples(r, f) for f in features]) for r in runs])
+    y, lengths = np.concatenate(columns.target)[:, component], [len(t) for t in columns.target]
+    fold = np.repeat([next(k for k, fold in enumerate(folds) if r in fold) for r in runs], lengths)
+    guess = crossed(y, fold, lambda train, test: boosted(x[train], y[train], x[test], GROWTH))
+    return np.split(guess, np.cumsum(lengths)[:-1])

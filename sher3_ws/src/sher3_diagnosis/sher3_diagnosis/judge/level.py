@@ -18,7 +18,7 @@ import numpy as np
 
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.finding import Item
-from sher3_diagnosis.judge.evidence.scales import of_whole
+from sher3_diagnosis.judge.evidence.scales import of_whole, unexplained
 
 LEVELS = (0.003, 0.01, 0.03, 0.1, 0.3)
 """Levels of a machine, equally likely beforehand: from the best labelled robots to three times the worst."""
@@ -29,6 +29,10 @@ SPREAD = 1.0
 arms in motion, 0.3 on arms seen from outside (`bench/imperfect.py`), and more on machines whose parts are unlike."""
 FOREIGN = (0.3, 0.2, 1.0)
 """Share of places whose cause is foreign, and middle and spread of what is left there: it tells no level."""
+LAWFUL = (1.5, 0.65)
+"""Exponent of the share that no function explains, and the share at which it speaks neither way. Likeliest on 77 places
+of axes and arms with right causes and 87 with foreign ones, which count half: 1.7 and 0.67 (`bench/imperfect.py`,
+`bench/other_odds.py`); without axes, arms or magnets the exponent is 1.6, 2.7 or 1.2, the share 0.73, 0.75 or 0.60."""
 SHARES = ("left", "stray")
 """Evidence that is a share of the gap. What free laws take off what is left is looked at as it is: whose law it
 follows is no matter of a level."""
@@ -47,6 +51,17 @@ def at_level(numbers: Mapping[str, float], level: float) -> dict[str, float]:
     """Return the evidence of a cause with its shares in units of a level, that of labelled robots or a worse one."""
     worse = max(1.0, level / USUAL)
     return {name: x / worse if name in SHARES else x for name, x in numbers.items()}
+
+
+def lawful(numbers: Mapping[str, float]) -> float:
+    """Return the factor that what is left puts on the odds of a foreign law; 1 where no free law was looked at.
+
+    Of a machine whose level nobody knows, how much is left tells little; whether it is a law tells more. A foreign law
+    is a function of something: free functions of what was recorded miss a tenth of it, or a hundredth. What a right
+    cause leaves is drift, waves and what nobody recorded: they mostly miss more than half.
+    """
+    exponent, even = LAWFUL
+    return (even / unexplained(numbers)) ** exponent if "anything" in numbers else 1.0
 
 
 def _told(likely: Sequence[Array]) -> Array:

@@ -13,7 +13,7 @@ from sher3_diagnosis.finding import LIBRARY, NO_GAP, OUTSIDE, ExactFinding, Item
 from sher3_diagnosis.judge.calibration.calibration import Calibration
 from sher3_diagnosis.judge.calibration.typical import trust
 from sher3_diagnosis.judge.evidence.scales import scaled_cause, scaled_exact, scaled_gap
-from sher3_diagnosis.judge.level import LEVELS, at_level, levels_told
+from sher3_diagnosis.judge.level import LEVELS, at_level, lawful, levels_told
 from sher3_diagnosis.verdict import Interval, Place
 
 
@@ -42,9 +42,10 @@ def _over_levels(item: Item, calibration: Calibration, closure: Interval | None,
     if item.index is None:
         return judged(item, calibration)
     each = [judged(replace(item, numbers=at_level(item.numbers, x)), calibration, closure) for x in LEVELS]
-    effects = weight @ np.array([j.effects for j in each])
-    outside, no_gap = (float(weight @ x) for x in ([j.outside for j in each], [j.no_gap for j in each]))
-    return replace(each[0], item=item, effects=tuple(effects.tolist()), outside=outside, no_gap=no_gap)
+    odds = weight @ np.array([(*j.effects, j.outside, j.no_gap) for j in each])
+    odds[-2] *= lawful(item.numbers)
+    *effects, outside, no_gap = (odds / odds.sum()).tolist()
+    return replace(each[0], item=item, effects=tuple(effects), outside=outside, no_gap=no_gap)
 
 
 def judged(item: Item, calibration: Calibration, closure: Interval | None = None) -> Judged:

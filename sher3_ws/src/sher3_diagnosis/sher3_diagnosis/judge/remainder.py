@@ -9,6 +9,7 @@ import numpy as np
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.fit.fitting import Fit
+from sher3_diagnosis.judge.evidence.free_law import loss_left
 from sher3_diagnosis.localise.regimes import regime
 from sher3_diagnosis.quantify.closure import residual_after
 from sher3_diagnosis.thresholds import LINE_SHARE, PERIOD_SHARE
@@ -17,10 +18,6 @@ SPECTRUM = 512
 """Samples of the discrete spectrum: a resolution of 0.2 Hz at 100 Hz."""
 PERIODS = (*np.arange(0.25, 4.0, 0.25), *np.arange(4.0, 25.0))
 """Periods per motor revolution that are tried."""
-ROUNDS, BINS, RATE = 60, 24, 0.3
-"""Rounds of the boosted fit, bins of each of its inputs, and the share of a round that is taken."""
-FEW = 100
-"""Samples below which a free function is not trained."""
 
 
 def remainder(evidence: Evidence, channel: Channel, after: Fit) -> str:
@@ -80,42 +77,12 @@ def position_period(evidence: Evidence, channel: Channel, left: Mapping[int, Arr
 
 
 def ceiling(evidence: Evidence, channel: Channel, left: Mapping[int, Array]) -> float:
-    """Return the held-out closure of a free function of the inputs: boosted trees on pairs of binned inputs.
+    """Return the held-out closure of a free function of the inputs, of the first component of what is left.
 
     It bounds what any static model of these inputs could close.
     """
-    rows, targets, runs = [], [], []
-    for r, x in left.items():
-        rows.append(evidence.views[r].inputs(channel.actuator)[evidence.data.residuals[r][channel].ok])
-        targets.append(x[:, 0] / evidence.floors[r][channel][0])
-        runs.append(np.full(len(x), r))
-    inputs, y, group = np.concatenate(rows), np.concatenate(targets), np.concatenate(runs)
-    predicted = np.zeros_like(y)
-    for r in np.unique(group):
-        train, test = group != r, group == r
-        if train.sum() > FEW:
-            predicted[test] = boosted(inputs[train], y[train], inputs[test])
-    before, after = float(np.mean(y**2)), float(np.mean((y - predicted) ** 2))
+    rows = [evidence.views[r].inputs(channel.actuator)[evidence.data.residuals[r][channel].ok] for r in left]
+    y = np.concatenate([x[:, :1] / evidence.floors[r][channel][0] for r, x in left.items()])
+    before = float(np.mean(y**2))
+    (after,) = loss_left([np.concatenate(rows)], y, np.repeat(list(left), [len(x) for x in rows]))
     return float(np.clip((before - after) / max(before - 1.0, 1e-9), 0.0, 1.0))
-
-
-def boosted(x: Array, y: Array, new: Array) -> Array:
-    """Fit y (n,) by a sum of functions of pairs of the inputs x (n, k) and predict it at `new` (m, k) -> (m,).
-
-    Each round fits the means of what is left over the cells of one pair of binned inputs, shrunk by `RATE`. Small,
-    fast, and without an assumption on the shape.
-    """
-    edges = [np.unique(np.quantile(c, np.linspace(0, 1, BINS + 1)[1:-1])) for c in x.T]
-    codes = [np.searchsorted(e, c) for e, c in zip(edges, x.T, strict=True)]
-    fresh = [np.searchsorted(e, c) for e, c in zip(edges, new.T, strict=True)]
-    out, left = np.zeros(len(new)), y.copy()
-    pairs = [(i, j) for i in range(x.shape[1]) for j in range(i, x.shape[1])]
-    size = (BINS + 1) ** 2
-    for k in range(ROUNDS):
-        i, j = pairs[k % len(pairs)]
-        cell, other = codes[i] * (BINS + 1) + codes[j], fresh[i] * (BINS + 1) + fresh[j]
-        count = np.bincount(cell, minlength=size)
-        mean = np.bincount(cell, left, minlength=size) / (count + 5.0)
-        left -= RATE * mean[cell]
-        out += RATE * mean[other]
-    return out

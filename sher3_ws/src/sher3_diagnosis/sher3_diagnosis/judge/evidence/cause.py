@@ -171,7 +171,8 @@ def free_laws(
     step = max(1, len(signal) // ROWS)
     picked = {r: np.flatnonzero(evidence.data.residuals[r][channel].ok)[::step] for r in left}
     signal = np.concatenate([white[r][::step] for r in left])
-    run = np.concatenate([np.full(len(picked[r]), r) for r in left])
+    record = {id(v): n for n, v in enumerate(evidence.views)}  # blocks of one record share a view
+    run = np.concatenate([np.full(len(picked[r]), record[id(evidence.views[r])]) for r in left])
     own, place, rest = [], [], []
     for r, rows in picked.items():
         view = evidence.views[r]

@@ -22,11 +22,9 @@ WHOLE = 0.75
 """Say of the share of the whole gap in what several causes leave. Of 0.5, 0.6, 0.75 and 1 the likeliest on labelled
 axes, arms and robots (`bench/imperfect.py`, `bench/other_odds.py`)."""
 LEAST_LAW = 0.002
-"""Share that a free law of the cause's own inputs leaves, below which it does not matter what explains the rest. It
-does not matter below the floor either."""
+"""Share that a free law of the cause's own inputs leaves, below which it does not matter whose the rest is."""
 LEAST_OWN = 0.02
-"""Of what the own inputs leave, the share that no other input explains. Below this the remainder belongs to the other
-inputs beyond doubt."""
+"""Of what is left, the share that no input explains. Below this the remainder belongs to the inputs beyond doubt."""
 
 
 def log_above(x: float, least: float) -> float:
@@ -55,8 +53,9 @@ def scaled_cause(numbers: Mapping[str, float]) -> dict[str, float]:
     floors, bare = max(numbers["power"], 0.0), _share(strange(numbers))
     left = beside_others(bare, numbers)
     steady = {"spread": log_above(numbers["spread"], 0.001)} if "spread" in numbers else {}
+    foreign = {"foreign": -math.log(unexplained(numbers, "law", LEAST_LAW))} if "law" in numbers else {}
     return (
-        _foreign(numbers, floors)
+        foreign
         | steady
         | {
             "left": log_above(left, LEAST_SHARE),
@@ -96,17 +95,17 @@ def strange(numbers: Mapping[str, float]) -> float:
     return stray + bend * bend / (bend + BENT)
 
 
-def _foreign(numbers: Mapping[str, float], floors: float) -> dict[str, float]:
-    """Return how far others explain what own inputs leave; nothing where free laws were not looked at.
+def unexplained(numbers: Mapping[str, float], of: str = "left", least: float = 0.0) -> float:
+    """Return the share of what is left that no function of whatever was recorded explains, `LEAST_OWN` to 1.
 
-    Minus the logarithm of the share that they do not explain, which for little is the share that they do: so that what
-    is all theirs counts for more than what is mostly theirs.
+    Args:
+        numbers: evidence of a cause, of which free laws were looked at.
+        of: `left`, or `law` for what a free law of the own inputs leaves.
+        least: share of the gap below which it does not matter what explains the rest; it does not below the floor.
     """
-    if "law" not in numbers:
-        return {}
-    law, anything = (beside_others(_share(numbers[name]), numbers) for name in ("law", "anything"))
-    theirs = max(0.0, law - anything) / max(law, LEAST_LAW, 1.0 / max(floors, 1.0))
-    return {"foreign": -log_above(1.0 - theirs, LEAST_OWN)}
+    left, anything = (beside_others(_share(numbers[name]), numbers) for name in (of, "anything"))
+    told = max(0.0, left - anything) / max(left, least, 1.0 / max(numbers["power"], 1.0))
+    return max(1.0 - told, LEAST_OWN)
 
 
 def _share(x: float) -> float:
