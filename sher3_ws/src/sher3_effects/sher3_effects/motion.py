@@ -128,6 +128,14 @@ class GridView:
         """Time between two ticks, s."""
         return self.run.period
 
+    def quantities(self, site: str) -> dict[str, Array]:
+        """Return quantity, of `sher3_diagnosis.effect.INPUTS`, -> (g, k) columns, as a place feels them."""
+        raise NotImplementedError
+
+    def inputs(self, actuator: str) -> Array:
+        """Return (g, k) all of them side by side."""
+        return np.hstack([*self.quantities(actuator).values()])
+
     def at_residuals(self, x: Array) -> Array:
         """Low-pass values of the ticks and sample them on the residual grid."""
         return self.run.to_grid(x)

@@ -27,7 +27,8 @@ def test_the_tip_is_no_axis(view):
     motion = view.motion("delta_2")
     assert motion.top == ROBOT.actuators[1].limits.velocity
     assert motion.position == pytest.approx(view.run.smooth[view.run.grid, 1])
-    assert view.inputs("tip").shape == (len(view.run.grid), 4)
+    told = view.quantities("tip")
+    assert view.inputs("tip").shape == (len(view.run.grid), sum(x.shape[1] for x in told.values()))
 
 
 def test_the_speed_of_the_robot_is_the_norm_of_the_axes_shares(view):

@@ -206,11 +206,6 @@ class AxisView(ChainView):
 
     # what the engine reads
 
-    def inputs(self, actuator: str) -> Array:
-        """Return (g, 3): position, velocity, and direction of the motion, 0 at rest."""
-        velocity = self.velocity[:, 0]
-        return np.column_stack([self.position[:, 0], velocity, np.sign(velocity) * self.moving])
-
     def quantities(self, site: str) -> dict[str, Array]:
         """Return quantity, of `sher3_diagnosis.effect.INPUTS`, -> (g, k) columns, as the axis feels them.
 

@@ -271,14 +271,6 @@ class MotionView(ChainView):
 
     # what the engine reads
 
-    def inputs(self, actuator: str) -> Array:
-        """Return (g, 5): position, velocity and direction of the joint, the force it needs, and its acceleration."""
-        row = self.row(actuator)
-        velocity = self.velocity[:, row]
-        direction = np.sign(velocity) * self.moving[:, row]
-        own = [self.position[:, row], velocity, direction, self.inertial[:, row], self.acceleration[:, row]]
-        return np.column_stack(own)
-
     def quantities(self, site: str) -> dict[str, Array]:
         """Return quantity, of `sher3_diagnosis.effect.INPUTS`, -> (g, k) columns, as a joint feels them."""
         row = self.row(site)

@@ -57,7 +57,9 @@ def test_what_the_engine_reads():
     seen = view(0.1 * 0.01 * np.arange(400), lead=0.004)
     assert seen.excitation == "sweep" and seen.rate == 100.0
     assert seen.speed_share[50:-50] == pytest.approx(1.0, rel=1e-3)
-    assert seen.inputs("slide").shape == (400, 3) and set(seen.inputs("slide")[50:-50, 2]) == {1.0}
+    told = seen.quantities("slide")
+    assert seen.inputs("slide").shape == (400, sum(x.shape[1] for x in told.values()))
+    assert told["direction"][-50:, 0] == pytest.approx(1.0)
     assert not (seen.loaded.any() or seen.warmth.any() or seen.temperature_known)
     assert seen.axis("slide").mass == 2.0 and seen.row("slide") == 0
 

@@ -9,7 +9,7 @@ import numpy as np
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.fit.fitting import Fit
-from sher3_diagnosis.judge.evidence.free_law import loss_left
+from sher3_diagnosis.judge.evidence.free_law import ROWS, loss_left
 from sher3_diagnosis.localise.regimes import regime
 from sher3_diagnosis.quantify.closure import residual_after
 from sher3_diagnosis.thresholds import LINE_SHARE, PERIOD_SHARE
@@ -81,8 +81,9 @@ def ceiling(evidence: Evidence, channel: Channel, left: Mapping[int, Array]) -> 
 
     It bounds what any static model of these inputs could close.
     """
-    rows = [evidence.views[r].inputs(channel.actuator)[evidence.data.residuals[r][channel].ok] for r in left]
-    y = np.concatenate([x[:, :1] / evidence.floors[r][channel][0] for r, x in left.items()])
+    step = max(1, sum(map(len, left.values())) // ROWS)
+    rows = [evidence.views[r].inputs(channel.actuator)[evidence.data.residuals[r][channel].ok][::step] for r in left]
+    y = np.concatenate([x[::step, :1] / evidence.floors[r][channel][0] for r, x in left.items()])
     before = float(np.mean(y**2))
     (after,) = loss_left([np.concatenate(rows)], y, np.repeat(list(left), [len(x) for x in rows]))
     return float(np.clip((before - after) / max(before - 1.0, 1e-9), 0.0, 1.0))

@@ -147,13 +147,6 @@ class SherView(GridView):
         i, nominal = self.row(actuator), self.axis(actuator)
         return Motion(self.position[:, i], self.velocity[:, i], nominal.top, nominal.lead)
 
-    def inputs(self, actuator: str) -> Array:
-        """Return (g, 4): position, velocity, direction and contact force of an actuator; of the first for the tip."""
-        i = self.row(actuator) if actuator in ACTUATORS else 0
-        velocity = self.velocity[:, i]
-        direction = np.sign(np.round(velocity, 5))
-        return np.column_stack([self.position[:, i], velocity, direction, self.path.contact_force[:, i]])
-
     # what discovery reads
 
     def recorded(self, channel: Channel) -> Quantities:
