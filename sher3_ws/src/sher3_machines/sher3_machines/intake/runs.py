@@ -11,32 +11,11 @@ from sher3_machines.intake.readers.lerobot import is_data_set, read_data_set
 from sher3_machines.intake.tables import UNNAMED, Tables, read_tables
 
 EPISODES = (
-    "demo",
-    "demonstration",
-    "ep",
-    "episode",
-    "exp",
-    "experiment",
-    "measurement",
-    "rec",
-    "record",
-    "recording",
-    "rep",
-    "repeat",
-    "repetition",
-    "rollout",
-    "run",
-    "seq",
-    "sequence",
-    "session",
-    "take",
-    "test",
-    "traj",
-    "trajectory",
-    "trial",
+    "demo|demonstration|ep|episode|exp|experiment|measurement|rec|record|recording|rep|repeat|repetition|"
+    "rollout|run|seq|sequence|session|take|test|traj|trajectory|trial"
 )
 """Words that people number runs by; joints, sensors and channels are numbered by others."""
-WORD = rf"(?:[^/]*[ _-])?(?:{'|'.join(EPISODES)})[ _-]?\d+(?:[ _-][^/]*)?"
+WORD = rf"(?:[^/]*[ _-])?(?:{EPISODES})[ _-]?\d+(?:[ _-][^/]*)?"
 NUMBERED = re.compile(rf"(?i:(?P<group>(?:[^/]+/)*?{WORD})/(?P<column>.+))")
 """A column of a group that is numbered as runs are: `data/demo_12/obs/q`, `fourier_test3_results/q`."""
 
