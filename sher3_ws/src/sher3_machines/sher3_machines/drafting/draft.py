@@ -48,6 +48,8 @@ MOST_GEARED = 1e5
 """Ratio beyond which two columns are not two encoders of one axis."""
 FOLLOWS = 0.9
 """Correlation of two encoders below which one does not move with the other: a held axis."""
+STEPPED = 0.1
+"""Share of the samples up to which what a servo is told changes in steps."""
 LISTED = 12
 """Columns that a sentence lists at most."""
 
@@ -161,6 +163,8 @@ def _axis(axis: str, signals: Mapping[str, Place], tables: Tables, period: float
     _without_other_force(label, columns, guesses)
     own = unit
     columns["position"].update({"unit": unit, **({"factor": factor} if factor != 1.0 else {})})
+    if columns.get("reference", {}).get("unit") in TIME_UNITS:
+        _as_place(label, columns, x, values_of(signals["reference"], tables), guesses)
     if "load" in signals:
         sliding = columns["load"]["unit"] not in ROTARY_UNITS
         exact = "placeholder" in why or sliding == (unit in ROTARY_UNITS)
@@ -185,6 +189,26 @@ def _axis(axis: str, signals: Mapping[str, Place], tables: Tables, period: float
     turns = own == "rev" or own in VELOCITIES  # may well be many
     named_so = why == NAMED and not turns
     return {**out, **(_range(label, x * UNITS[own] * factor, str(out["motion"]), guesses) if named_so else {})}
+
+
+def _as_place(label: str, columns: dict[str, Any], x: Array, pulses: Array, guesses: list[str]) -> None:
+    """Read pulses (n,), which a hobby servo is told, as places: a position (n,) says how far it goes for one of them.
+
+    It does so at the end of each rest of steps, else all along. Pulses that stay tell nothing, and are left out.
+    """
+    place, told = columns["position"], columns.pop("reference")
+    ends = np.flatnonzero(np.diff(pulses))
+    if len(x) != len(pulses) or not len(ends):
+        return
+    kept = ends if len(ends) < STEPPED * len(x) else slice(None)
+    slope, zero = place.get("factor", 1.0) * np.polyfit(pulses[kept], x[kept], 1)
+    guesses.append(f"{label}: a pulse of 1 {told['unit']} is {slope:.4g} {place['unit']}: the record says so")
+    said = {
+        "unit": place["unit"],
+        "factor": float(f"{slope:.6g}"),
+        "offset": float(f"{zero * UNITS[place['unit']]:.6g}"),
+    }
+    columns["reference"] = told | said | {"override": True}
 
 
 def _without_other_force(label: str, columns: dict[str, Any], guesses: list[str]) -> None:

@@ -99,6 +99,8 @@ FORCEFUL = EFFORT | CURRENT | COMMAND | APPLIED
 """Words beside which a single letter at the end is a unit: `force_N`, `iq_A`, `u_V`; `enc_A` is the encoder of A."""
 SIDES = re.compile(r"(?i)(?<![a-z])(q|theta)_(?=[ml](?![a-z0-9]))")
 """A place of the motor or of the link, as textbooks of elastic joints write them: `q_m`, `theta_l`."""
+PULSES = vocabulary("pwm pulse pulses pulsewidth width servo")
+"""Words beside which a unit of time is that of the pulses that a hobby servo is told: `servo_us`."""
 WEIGHED = vocabulary("weight weights mass masses load force gewicht gewichte masse kraft last")
 """Words beside which a `g` at the end is a gram."""
 PREFIXES = re.compile(r"(soll|ist)(?=\w{3})|[lr](?=\w{4})")
@@ -144,6 +146,8 @@ def named(column: str) -> Named:
         return Named("applied", "_".join(w for w in rest if w not in APPLIED), unit)
     if unit in FORCES and set(words) & SECOND and not set(words) & POSITION:
         return Named("effort", "_".join(rest), unit)  # a load in percent is a force
+    if unit in TIME_UNITS and set(words) & PULSES and not set(words) & TIME:
+        return Named("reference", "_".join(w for w in rest if w not in PULSES), unit)
     if unit == "degC" or set(words) & TEMPERATURE:
         return Named("temperature", "_".join(w for w in rest if w not in TEMPERATURE), unit or "degC")
     signal = _signal(set(used) | (set(words) & SECOND), {w for w in table if w in ASKED | COMMAND})

@@ -249,3 +249,20 @@ def test_a_speed_in_hertz_turns(tmp_path):
         tmp_path, "time [s],velocity setpoint [Hz],velocity measured [Hz]", TIME, np.cos(TIME), np.sin(TIME)
     )
     assert "motion: rotary" in found.text and found.text.count("unit: rev/s") == 2
+
+
+@pytest.mark.parametrize(("header", "sign"), [("t,servo_us,angle_deg", 1.0), ("t,pulse width [us],pos [deg]", -1.0)])
+def test_pulses_of_a_hobby_servo_are_places(tmp_path, header, sign):
+    """A servo that turns 0.09 degrees for each microsecond and follows late is told a place, in its own scale."""
+    pulses = np.repeat(np.random.default_rng(3).integers(1000, 2000, 20), 100).astype(float)
+    asked, angle = sign * 0.09 * (pulses - 1500.0), np.zeros(len(pulses))
+    for k in range(1, len(angle)):
+        angle[k] = angle[k - 1] + 0.1 * (asked[k] - angle[k - 1])
+    (axis,) = parse_yaml(written(tmp_path, header, TIME, pulses, np.round(angle, 1)).text)["axes"]
+    reference = axis["signals"]["reference"]
+    assert axis["command_law"] == {"kind": "position"} and reference["factor"] == pytest.approx(sign * 0.09, rel=0.01)
+    assert reference["offset"] == pytest.approx(-sign * np.radians(135.0), rel=0.01)
+    (tmp_path / "a.yaml").write_text(written(tmp_path, header, TIME, pulses, angle).text, encoding="utf-8")
+    import_case([tmp_path / "a.csv"], tmp_path / "a.yaml", tmp_path / "case")
+    (signals,) = open_case(tmp_path / "case")[1][0].signals.values()
+    assert np.abs(signals["reference"] - np.radians(asked)).max() < np.radians(1.0)
