@@ -26,8 +26,8 @@ from sher3_common import FileError
 from sher3_diagnosis.judge.calibration.calibration import Calibration
 
 NUMBERS = {
-    "left": 0.01, "law": 0.01, "place": 0.01, "anything": 0.01, "spread": 0.001, "scatter": 1.0, "lost": 0.001,
-    "mismatch": 0.02, "sibling": 0.5, "ratio": 6.0, "power": 36.0, "samples": 4000.0, "idealised": 1.0,
+    "left": 0.01, "law": 0.01, "place": 0.01, "anything": 0.01, "spread": 0.001,
+    "mismatch": 0.02, "ratio": 6.0, "power": 36.0, "idealised": 1.0,
 }  # fmt: skip
 BAD = {"left": 0.6, "law": 0.5, "anything": 0.1, "spread": 0.2, "lost": 0.2, "mismatch": 0.5}
 RIVAL = {"presliding_friction": 0.5, "viscous_friction": 20.0}

@@ -179,10 +179,6 @@ AT_FLOOR = 1.1
 """Mean square over the floor up to which nothing is left that a law could be found in: two standard errors of a floor
 that a handful of repeats tells to 5 %. Set by that argument. Measure: `sher3 gap calibrate`, lines of the status."""
 
-INFORMED = 0.2
-"""Share of what is known of a cause that the other excitations must hold for one to be left out of its fit.
-Set by argument: less only says that one excitation shows it. Measure: `sher3 gap calibrate`, lines of the status."""
-
 SHOWN = 0.1
 """Share of the gap that a resample of the runs must show to tell how far it shrinks: one without the runs that show the
 gap does not. Set by argument. Measure: `sher3 gap challenge --seeds 0:40` (coverage of the closure)."""

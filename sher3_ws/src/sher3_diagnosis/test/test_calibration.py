@@ -16,8 +16,8 @@ from sher3_diagnosis.verdict import Interval
 
 TWO = {"classes": ("library", "outside_library"), "inputs": ("x",), "middle": (1.0,), "spread": (2.0,)}
 NUMBERS = {
-    "left": 0.01, "law": 0.01, "place": 0.01, "anything": 0.01, "spread": 0.001, "scatter": 1.0, "lost": 0.001,
-    "mismatch": 0.02, "sibling": 0.5, "ratio": 6.0, "power": 36.0, "samples": 4000.0, "idealised": 1.0,
+    "left": 0.01, "law": 0.01, "place": 0.01, "anything": 0.01, "spread": 0.001,
+    "mismatch": 0.02, "ratio": 6.0, "power": 36.0, "idealised": 1.0,
 }  # fmt: skip
 CALIBRATION = in_force()
 
@@ -41,7 +41,7 @@ def test_what_is_not_known_speaks_neither_way():
     """At its middle a number adds nothing: the scores are the offsets, -6 and 0."""
     model = Logistic(**TWO, weights=((3.0,), (0.0,)), offset=(-6.0, 0.0))
     assert model.probabilities({})["library"] == pytest.approx(1.0 / (1.0 + math.exp(6.0)))
-    limit = {name: x for name, x in NUMBERS.items() if name not in ("spread", "lost")}  # it has no coefficient
+    limit = {name: x for name, x in NUMBERS.items() if name != "spread"}  # it has no coefficient
     assert "spread" not in scaled_cause(limit)
     assert "foreign" not in scaled_cause({n: x for n, x in NUMBERS.items() if n not in ("law", "place", "anything")})
 
@@ -52,15 +52,26 @@ def test_a_model_whose_numbers_do_not_fit_is_refused():
 
 
 def test_scales_end_where_they_tell_nothing_more():
-    numbers = NUMBERS | {"left": -0.2, "law": 0.1, "anything": 0.04}
-    scaled = scaled_cause(numbers)
-    assert scaled["left"] == pytest.approx(math.log(0.003))
-    assert scaled["foreign"] == pytest.approx(-math.log(0.4))  # others do not explain 0.4 of what its own inputs leave
-    small = scaled_cause(numbers | {"law": 0.01, "anything": 0.0})
-    assert small["foreign"] == pytest.approx(-math.log(1.0 - 0.01 * 6.0**2))  # of a floor, of which it is a third
-    assert scaled_cause(numbers | {"anything": 0.0})["foreign"] == pytest.approx(math.log(50.0))  # all of it
-    assert scaled["complete"] == 0.0
-    assert scaled["floors"] == pytest.approx(math.log(0.3))
+    nothing = scaled_cause(NUMBERS | {"left": -0.2, "law": 0.1, "anything": 0.04})
+    assert nothing["left"] == pytest.approx(math.log(0.003))
+    assert nothing["floors"] == pytest.approx(math.log(0.3))
+    assert nothing["foreign"] == nothing["complete"] == 0.0  # what is not left is nobody's
+    numbers = NUMBERS | {"left": 0.1, "law": 0.1, "anything": 0.04}
+    assert scaled_cause(numbers)["foreign"] == pytest.approx(-math.log(0.4))  # others explain 0.6 of what is left
+    small = scaled_cause(numbers | {"left": 0.01, "law": 0.01, "anything": 0.0})
+    assert small["foreign"] == pytest.approx(-math.log(1.0 - 0.007 * 6.0**2))  # of a floor, of which it is a quarter
+    assert scaled_cause(numbers | {"law": 0.3, "anything": 0.0})["foreign"] == pytest.approx(math.log(50.0))  # all
+
+
+def test_a_bend_of_the_law_is_its_own_whoever_tells_where_it_bends():
+    numbers = NUMBERS | {"left": 0.1, "law": 0.1, "anything": 0.04}
+    assert scaled_cause(numbers | {"stray": 0.0})["foreign"] == pytest.approx(-math.log(1.0 - 0.6 * 0.5))
+    assert scaled_cause(numbers | {"stray": 0.1})["foreign"] == scaled_cause(numbers)["foreign"]
+
+
+def test_what_is_too_little_to_be_a_remainder_is_nobodys():
+    bare = NUMBERS | {"left": 0.0025, "law": 0.0025, "anything": 0.0, "power": 1e4}
+    assert scaled_cause(bare)["foreign"] == 0.0
     assert scaled_cause(NUMBERS | {"left": 0.1})["floors"] == pytest.approx(math.log(0.1 * 6.0**2))  # six floors
     complete = scaled_cause(NUMBERS | {"left": 0.03, "idealised": 0.0})
     assert complete["complete"] == pytest.approx(math.log(10.0))  # ten times the share that is nothing
@@ -90,7 +101,7 @@ def test_candidates_share_what_the_library_has_by_their_unlikeness():
 
 def test_a_clean_cause_is_named_and_one_that_leaves_half_to_foreign_inputs_is_not():
     assert answer_to(judged(cause(), CALIBRATION, Interval(value=0.99)), DEFAULT) == "library"
-    worse = cause(left=0.6, law=0.5, place=0.5, anything=0.1, spread=0.2, lost=0.2, mismatch=0.5)
+    worse = cause(left=0.6, law=0.5, place=0.5, anything=0.1, spread=0.2, mismatch=0.5)
     assert answer_to(judged(worse, CALIBRATION, Interval(value=0.99)), DEFAULT) == "outside_library"
 
 

@@ -33,9 +33,8 @@ RIDGE = 2.0
 EVEN = 0.01
 """The same of the constants: no answer is impossible because no case had it."""
 READ = ("left", "complete", "floors", "foreign", "spread", "mismatch", "size")
-"""Evidence that the model of a cause reads. Not read, for it told nothing more of plants left out: what a free law of
-its own inputs leaves (`law`), what is lost in an excitation left out (`lost`), the next effect (`sibling`) and
-`scatter`."""
+"""Evidence that the model of a cause reads. What a free law of its own inputs leaves (`law`) is not read by itself, for
+it told nothing more of plants left out."""
 FEW = 10
 """Examples of a plant up to which each counts the same: a lone one must not speak for its plant."""
 FOREIGN = {OUTSIDE: 0.5}

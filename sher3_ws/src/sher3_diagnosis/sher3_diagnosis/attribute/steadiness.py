@@ -1,4 +1,4 @@
-"""Parameter constancy: whether a cause has one size in every excitation, and predicts an excitation left out.
+"""Parameter constancy: whether a cause has one size in every excitation.
 
 Letting the coefficients of a cause differ from excitation to excitation explains hardly more when its law is right.
 The share it explains more is the parameter's spread, weighted by what each excitation tells of it.
@@ -15,7 +15,7 @@ import numpy as np
 from sher3_diagnosis.channel import Array
 from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.fit.fitting import Fit, solve
-from sher3_diagnosis.thresholds import CERTAIN, CONSTANT, INFORMED
+from sher3_diagnosis.thresholds import CERTAIN, CONSTANT
 
 
 @dataclass(frozen=True)
@@ -59,48 +59,9 @@ class Steadiness:
         return self.spread < CONSTANT or self.varying < CERTAIN
 
     @property
-    def scatter(self) -> float:
-        """F: how much more coefficients differ between excitations than between repeats of one; 1 for a true cause.
-
-        Differences of repeats are the coefficient's own uncertainty. 1 where there is nothing to compare.
-        """
-        width = self.right.shape[1]
-        kinds = len(set(self.excitation))
-        runs = len(self.excitation)
-        if width == 0 or kinds < 2 or runs == kinds:
-            return 1.0
-        within = self.gained(tuple(range(runs))) - self.gained(self.excitation)
-        per_repeat = max(within / (runs - kinds), float(width))
-        return max(self.varying, 0.0) / (kinds - 1) / per_repeat
-
-    @property
     def comparable(self) -> bool:
         """Whether there are coefficients that could differ, and more than one excitation in which they could."""
         return self.right.shape[1] > 0 and len(set(self.excitation)) > 1
-
-    @property
-    def lost(self) -> float | None:
-        """Share of what the cause explains that is lost in excitations left out of its fit; 0 where it transfers.
-
-        None where nothing tells: no coefficients, or no excitation without which the others show the cause.
-        """
-        if not self.comparable or self.explained <= 0.0:
-            return None
-        all_normal, all_right = self.normal.sum(axis=0), self.right.sum(axis=0)
-        together = solve(all_normal, all_right)
-        lost = []
-        for name in sorted(set(self.excitation)):
-            mine = [e == name for e in self.excitation]
-            a, b = self.normal[mine].sum(axis=0), self.right[mine].sum(axis=0)
-            if np.trace(all_normal - a) < INFORMED * np.trace(all_normal):
-                continue
-            apart = solve(all_normal - a, all_right - b)
-            lost.append(max(0.0, _explained(a, b, together) - _explained(a, b, apart)))
-        return sum(lost) / self.explained if lost else None
-
-
-def _explained(normal: Array, right: Array, coefficients: Array) -> float:
-    return float(2.0 * coefficients @ right - coefficients @ normal @ coefficients)
 
 
 def steadiness_of(evidence: Evidence, fit: Fit, index: int) -> Steadiness:

@@ -55,13 +55,9 @@ class CauseEvidence:
         place: of all quantities of its place.
         anything: of whatever was recorded anywhere, and its past.
         spread: relative gain from fitting each excitation separately.
-        scatter: how much more the coefficients differ between excitations than between repeats (F).
-        lost: share lost in excitations left out of the fit.
         mismatch: between the regimes where the cause says the gap is and where it is: 0 to 1.
-        sibling: share by which the next effect in its place explains less; 1 without one.
         ratio: gap over floor, with the mean of every run.
         power: of the gap over the floor, less one, of the component with most: without what a free mean takes.
-        samples: that tell of it.
         idealised: 1 where the law of a cause of this gap leaves something out (`Effect.leaves_out`), 0 where the laws
             of all are complete: what several causes leave may come from any of them.
     """
@@ -73,13 +69,9 @@ class CauseEvidence:
     place: float | None
     anything: float | None
     spread: float | None
-    scatter: float
-    lost: float | None
     mismatch: float
-    sibling: float
     ratio: float
     power: float
-    samples: float
     idealised: float
 
     def numbers(self) -> dict[str, float]:
@@ -119,13 +111,9 @@ def cause_evidence(evidence: Evidence, attribution: Attribution, index: int) -> 
         place=place,
         anything=anything,
         spread=steady.spread if steady.comparable else None,
-        scatter=steady.scatter,
-        lost=steady.lost,
         mismatch=1.0 - pattern_of(evidence, found, index).agreement,
-        sibling=_sibling(attribution, index),
         ratio=whole.ratio,
         power=power_of(evidence, channel, before),
-        samples=float(samples),
         idealised=float(any(e.leaves_out for e in _effects_on(attribution, channel))),
     )
 
@@ -194,13 +182,3 @@ ELSEWHERE = frozenset({"time", "temperature", "posture"})
 def _stacked(columns: Mapping[str, Array], names: Collection[str], rows: NDArray[np.int64]) -> Array:
     parts = [x[rows] for name, x in columns.items() if name in names]
     return np.hstack(parts) if parts else np.zeros((len(rows), 0))
-
-
-def _sibling(attribution: Attribution, index: int) -> float:
-    """Share by which the next effect of another id explains less in the place of a cause."""
-    chosen, worth = attribution.fit.terms[index], max(attribution.explained[index], 1.0)
-    ranked, total = attribution.ranked(index)
-    others = [f.total for f in ranked if f.terms[-1].effect.id != chosen.effect.id]
-    if not others:
-        return 1.0
-    return float(np.clip((min(others) - total) / worth, 0.0, 1.0))

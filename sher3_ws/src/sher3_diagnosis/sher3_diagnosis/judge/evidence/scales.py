@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 
 LEAST_SHARE = 0.003
-"""Share of a gap below which a remainder is none."""
+"""Share of a gap below which a remainder is none, whatever explains it."""
 LEAST_FLOORS = 0.3
 """Power over the floor below which a remainder is none: a healthy robot as built leaves as much."""
 MOST_POWER = 10.0
@@ -21,8 +21,6 @@ of what labelled robots are drawn with (`sher3_challenge.plants.level.SHAPE`). S
 WHOLE = 0.75
 """Say of the share of the whole gap in what several causes leave. Of 0.5, 0.6, 0.75 and 1 the likeliest on labelled
 axes, arms and robots (`bench/imperfect.py`, `bench/other_odds.py`)."""
-LEAST_LAW = 0.002
-"""Share that a free law of the cause's own inputs leaves, below which it does not matter whose the rest is."""
 LEAST_OWN = 0.02
 """Of what is left, the share that no input explains. Below this the remainder belongs to the inputs beyond doubt."""
 
@@ -53,9 +51,8 @@ def scaled_cause(numbers: Mapping[str, float]) -> dict[str, float]:
     floors, bare = max(numbers["power"], 0.0), _share(strange(numbers))
     left = beside_others(bare, numbers)
     steady = {"spread": log_above(numbers["spread"], 0.001)} if "spread" in numbers else {}
-    foreign = {"foreign": -math.log(unexplained(numbers, "law", LEAST_LAW))} if "law" in numbers else {}
     return (
-        foreign
+        _foreign(numbers)
         | steady
         | {
             "left": log_above(left, LEAST_SHARE),
@@ -101,11 +98,22 @@ def unexplained(numbers: Mapping[str, float], of: str = "left", least: float = 0
     Args:
         numbers: evidence of a cause, of which free laws were looked at.
         of: `left`, or `law` for what a free law of the own inputs leaves.
-        least: share of the gap below which it does not matter what explains the rest; it does not below the floor.
+        least: share of the gap that is nothing, whatever explains it; what is below the floor is nothing either.
     """
     left, anything = (beside_others(_share(numbers[name]), numbers) for name in (of, "anything"))
-    told = max(0.0, left - anything) / max(left, least, 1.0 / max(numbers["power"], 1.0))
+    told = max(0.0, left - max(anything, least)) / max(left, least, 1.0 / max(numbers["power"], 1.0))
     return max(1.0 - told, LEAST_OWN)
+
+
+def _foreign(numbers: Mapping[str, float]) -> dict[str, float]:
+    """Return how far others explain what own inputs leave; nothing where free laws were not looked at.
+
+    A bend of the law is its own, whoever tells where it bends: what they explain counts as far as it is strange.
+    """
+    if "law" not in numbers:
+        return {}
+    theirs = 1.0 - unexplained(numbers, "law", LEAST_SHARE)
+    return {"foreign": -math.log(1.0 - theirs * _share(strange(numbers) / max(numbers["left"], LEAST_SHARE)))}
 
 
 def _share(x: float) -> float:
