@@ -27,7 +27,7 @@ from sher3_description import Robot, load_robot
 from sher3_diagnosis.verdict import Answer, NextExperiment, Place, Verdict
 from sher3_gap.case.loading import signals_of
 from sher3_gap.excitation import excite
-from sher3_gap.experiments.foreseen import APART, REPEATS, TRACKED, WARMED, WARMER
+from sher3_gap.experiments.foreseen import APART, REPEATS, SAME, TRACKED, WARMED, WARMER
 from sher3_gap.sher import diagnose_runs
 
 PLANTS = ("lumped", "tables", "mujoco")
@@ -43,11 +43,13 @@ class Settled:
     Attributes:
         before: odds of its best bet.
         expected: odds of the effect at work, after the experiment that the verdict names.
+        reached: those that it then has.
         after: odds of the likeliest answer after each experiment, and whether it is right.
     """
 
     before: float
     expected: float
+    reached: float
     after: tuple[tuple[float, bool], ...]
 
     def by(self, experiments: int) -> tuple[float, bool]:
@@ -65,13 +67,15 @@ def signals(plan: CasePlan, runs: Sequence[RunPlan], robot: Robot) -> list[Any]:
 
 
 def run_again(plan: CasePlan, asked: NextExperiment, taken: int, robot: Robot) -> list[Any]:
-    """Return the signals of an experiment that follows `taken` runs, with what it adds."""
+    """Return the signals of an experiment that follows `taken` runs, with what it adds; no repeats of what there is."""
     climate = replace(plan.climate, start=plan.climate.start + WARMER * (asked.added == WARMED))
     other = replace(plan, climate=climate, tracker=plan.tracker or asked.added == TRACKED)
-    names = [
-        replace(excite(asked.excitation, robot, posture=p), name=f"{asked.excitation}_in_{p}") for p in APART
-    ]  # no repeats of what the case has in other postures
-    new = [(e, k) for e in names for k in range(REPEATS)]
+    if asked.excitation == SAME:
+        recorded = {run.excitation.label: run.excitation for run in plan.runs}
+        new = [(replace(e, name=f"{e.name}_again"), 0) for e in recorded.values()]
+    else:
+        apart = [(excite(asked.excitation, robot, posture=p), f"{asked.excitation}_in_{p}") for p in APART]
+        new = [(replace(e, name=name), k) for e, name in apart for k in range(REPEATS)]
     first = min(r.stamp for r in plan.runs)
     runs = [
         RunPlan(e, k, first + (taken + n) * RUN_SPACING_NS, plan.seed + 7 * (taken + n)) for n, (e, k) in enumerate(new)
@@ -110,14 +114,16 @@ def settled(seed: int, kind: str, robot: Robot) -> Settled | None:
     if place is None or bet is None or not foretold(asked) or not OPEN[0] < bet.probability < OPEN[1]:
         print(f"{plan.truth.name} {seed}: no open bet", flush=True)
         return None
-    expected, after = asked.expected_odds, []
+    expected, reached, after = asked.expected_odds, [], []
     true = " + ".join(f.kind.effect for f in plan.faults)
     said = f"{plan.truth.name} {seed}: {true}; {named(bet)} {bet.probability:.2f}"
     while foretold(asked) and len(after) < MOST:
         runs += run_again(plan, asked, len(runs), robot)
         verdict = diagnose_runs(runs, robot).verdict
         found = same_place(verdict, place)
-        likely = found.answers[0] if found else Answer(answer="no_gap", probability=0.0)
+        answers = found.answers if found else [Answer(answer="no_gap", probability=0.0)]
+        likely = answers[0]
+        reached.append(sum(a.probability for a in answers if is_right(a, plan)))
         after.append((likely.probability, is_right(likely, plan)))
         said += (
             f"; {asked.excitation}{' with ' * bool(asked.added)}{asked.added}, {asked.expected_odds:.2f} expected: "
@@ -127,7 +133,12 @@ def settled(seed: int, kind: str, robot: Robot) -> Settled | None:
             break
         asked = verdict.next_experiment
     print(said, flush=True)
-    return Settled(bet.probability, expected, tuple(after))
+    return Settled(bet.probability, expected, reached[0], tuple(after))
+
+
+def odds_of(x: Settled) -> tuple[float, float, float]:
+    """Return the odds before, expected and reached after the first experiment."""
+    return x.before, x.expected, x.reached
 
 
 def main() -> None:
@@ -154,8 +165,9 @@ def main() -> None:
                 low, high = wilson(k / n, n)
                 print(f"  {name}: {k} of {n}, {k / n:.2f} [{low:.2f}, {high:.2f}]")
     if found:
-        print(f"mean odds {np.mean([x.before for x in found]):.2f} before, "
-              f"{np.mean([x.expected for x in found]):.2f} expected after one")  # fmt: skip
+        before, expected, reached = (float(np.mean(x)) for x in zip(*map(odds_of, found), strict=True))
+        print(f"mean odds {before:.2f} of the best bet before")
+        print(f"mean odds of what is at work: {expected:.2f} expected after one, {reached:.2f} reached")
 
 
 if __name__ == "__main__":

@@ -85,10 +85,11 @@ def reference_of(rng: np.random.Generator, time: Array, size: float) -> Array:
     return np.convolve(np.interp(time, times, places), smooth / smooth.sum(), "same")
 
 
-def drawn_axis(seed: int, motion: int = 0) -> Drawn:
+def drawn_axis(seed: int, motion: int = 0, faster: float = 1.0, carried: float = 0.0) -> Drawn:
     """Return an axis under a position controller whose force is recorded.
 
-    The same axis is recorded in another motion, of other pace and size, where `motion` is not 0.
+    The same axis is recorded in another motion, of other pace and size, where `motion` is not 0; in the same motion
+    `faster`; or with a known mass on it, `carried` times its own.
     """
     rng = np.random.default_rng([seed, 1])
     rotary = bool(rng.random() < 0.5)
@@ -128,6 +129,8 @@ def drawn_axis(seed: int, motion: int = 0) -> Drawn:
     gains = (pace**2 * mass, 1.4 * pace * mass)
     other = np.random.default_rng([seed, 1, motion])
     asked = reference_of(other, time, size * float(other.uniform(0.5, 1.2))) if motion else reference
+    asked = np.interp(np.arange(0.0, time[-1] / faster, DRIVE) * faster, time, asked) if faster != 1.0 else asked
+    law = (law[0] + carried * mass, *law[1:])
     rows = played(asked, DRIVE, FINE, law, gains, STICKS * top, count, gain if known else 1.0)
     every = int(rng.choice([1, 2, 5, 10]))
     late = int(rng.integers(2, 6)) * every if "sensor_delay" in chosen else 0
@@ -148,7 +151,7 @@ def drawn_axis(seed: int, motion: int = 0) -> Drawn:
     axis = {
         **_axis(rotary, count, ("position", "effort")),
         "command_law": {"kind": "force"},
-        "mass": mass,
+        "mass": (1.0 + carried) * mass,
         "gravity": {"arm": weight if known else 0.0},
     }
     signals = {"position": rows[::every, 0], "effort": effort[::every]}

@@ -41,12 +41,14 @@ class Rehearsal(NamedTuple):
         purpose: what is to be run, and why.
         added: what the recorded runs had not, as a tracker or another temperature, in words; empty for none.
         data: its runs, of which no residual is looked at.
+        elsewhere: whether they go where none was recorded, so that a law may be bent there as nobody has seen.
     """
 
     excitation: str
     purpose: str
     added: str
     data: Whitened
+    elsewhere: bool = True
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
+from sher3_diagnosis.fit.fitting import fit, make_term
 from sher3_diagnosis.flow import diagnose
+from sher3_diagnosis.judge.foretold import foretold
 from sher3_diagnosis.machine import Rehearsal
 from toy import DIRECTION, Column, Toy, case, evidence_of, stroke
 
@@ -24,12 +26,15 @@ class Foreseeing(Toy):
 
     effects_known: tuple = (DIRECTION, WARMTH)
     different: str = ""
+    elsewhere: bool = True
 
     def rehearsals(self, evidence):
         empty = stroke(size=0.0)
         quiet = replace(empty, values=np.zeros_like(empty.values))
         yield Rehearsal("same", "more of the same", "", evidence_of([warmed(quiet, 1.0)]).data)
-        yield Rehearsal("apart", "no warmth", self.different, evidence_of([warmed(quiet, 0.0)] * 2).data)
+        yield Rehearsal(
+            "apart", "no warmth", self.different, evidence_of([warmed(quiet, 0.0)] * 2).data, self.elsewhere
+        )
 
 
 @pytest.fixture
@@ -65,6 +70,41 @@ def test_the_odds_that_the_library_lacks_the_cause_stay_as_they_are(alike):
     verdict = diagnose(Foreseeing(), alike).verdict
     library = sum(a.probability for a in verdict.places[0].answers if a.causes)
     assert verdict.next_experiment.expected_odds <= library
+
+
+def test_less_is_promised_where_a_law_may_be_bent_as_nobody_has_seen(alike):
+    bent, seen = (diagnose(Foreseeing(elsewhere=x), alike).verdict for x in (True, False))
+    library = sum(a.probability for a in seen.places[0].answers if a.causes)
+    assert seen.next_experiment.expected_odds == pytest.approx(library, abs=1e-3)
+    assert 0.95 < bent.next_experiment.expected_odds < library - 0.005
+
+
+class Formed(Column):
+    """Follows the warmth, or in its other form the direction."""
+
+    def shapes(self, views, site):
+        return [{"form": 0.0}, {"form": 1.0}]
+
+    def signature(self, view, site, shape):
+        other = Column("other", "drift", "direction" if shape.get("form") else "warmth")
+        return other.signature(view, site, {})
+
+
+def test_a_rival_that_has_another_form_for_the_new_runs_is_not_told_apart(alike):
+    formed = Foreseeing(effects_known=(DIRECTION, Formed("drift", "drift", "warmth")), elsewhere=False)
+    asked = diagnose(
+        formed, alike
+    ).verdict.next_experiment  # told apart where the drift is at work, not where it is not
+    assert asked.expected_odds == pytest.approx(0.75, abs=0.01)
+
+
+def test_a_bend_is_a_share_of_the_power_of_the_last_law(alike):
+    evidence = evidence_of(alike)
+    terms = [make_term(evidence.data, x, "axis", {}) for x in (DIRECTION, WARMTH)]
+    found = fit(evidence.data, terms[:1])
+    plain, bent = (foretold(found, terms[:1], evidence.data, level) for level in (0.0, 0.1))
+    straight, off = (np.concatenate([y for run in x for y in run.values()]) for x in (plain, bent))
+    assert np.mean((off - straight) ** 2) == pytest.approx(0.1 * np.mean(straight**2), rel=0.3)
 
 
 def test_a_machine_that_foresees_nothing_names_what_shows_the_rival(alike):

@@ -2,13 +2,16 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
-from sher3_diagnosis.channel import AT_TIP
+from sher3_diagnosis.channel import AT_TIP, Channel
 from sher3_effects import plants
 from sher3_gap import diagnose_runs
 from sher3_gap.evidence import gather
-from sher3_gap.experiments.foreseen import TRACKED, WARMED, foreseen
+from sher3_gap.experiments.foreseen import SAME, TRACKED, WARMED, foreseen
 from simulated import ROBOT, runs_of, signals
+
+SENSOR = Channel("sensing", "force_sensor")
 
 
 def untracked(runs):
@@ -42,3 +45,12 @@ def test_a_tracker_is_asked_for_where_a_lead_and_an_encoder_scale_give_the_same(
     assert asked is not None and {"lead_error", "encoder_scale"} <= set(asked.separates)
     assert asked.added == TRACKED
     assert asked.expected_odds > 0.9
+
+
+def test_the_recorded_runs_once_warmer_come_before_other_runs_once_warmer():
+    evidence = gather(signals(runs_of(["steps", "loads"], repeats=2)), ROBOT)
+    same = next(x for x in foreseen(evidence) if x.added == WARMED)
+    assert (same.excitation, same.elsewhere, len(same.data.views)) == (SAME, False, 2)
+    for r, view in enumerate(same.data.views):
+        assert np.abs(view.warmth - 5.0).max() < 0.5  # recorded at the reference
+        assert same.data.samples[r, SENSOR] == evidence.data.samples[2 * r, SENSOR]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 from sher3_description.contract import REFERENCE_TEMPERATURE
@@ -15,6 +16,7 @@ from sher3_gap.evidence import SherEvidence, gather
 from sher3_gap.excitation import catalogue, excite
 from sher3_gap.experiments.rehearsal import rehearse
 from sher3_gap.experiments.separation import floors_of
+from sher3_gap.stages.view import SherView
 
 APART = ("p1", "p2")
 """Postures of an experiment: the two opposite ones."""
@@ -23,20 +25,25 @@ WHY = f"what the rivals foretell differs most here; twice in each of the posture
 WARMER = 5.0
 """Degrees by which a robot is warmed for an experiment, K: an hour of work in a warm room."""
 TRACKED, WARMED = "a tracker at the tip", f"the robot {WARMER:g} K warmer"
+SAME = "the recorded excitations"
+SAME_WHY = "nothing but the warmth differs, so that nothing else can be taken for it; under names of their own"
 
 
 def foreseen(evidence: SherEvidence) -> Iterator[Rehearsal]:
     """Yield each excitation of the standard set, twice in each of two postures, with the floors of a case.
 
-    First as the case was recorded; then with the tip tracked, where it was not; then with the robot warmed. Known loads
-    only where the case has some: whoever has none cannot put any on.
+    First as the case was recorded; then with the tip tracked, where it was not; then with the robot warmed, before that
+    the recorded excitations once more. Known loads only where the case has some: whoever has none cannot put any on.
     """
     floor = floors_of(evidence)
     loads = any(run.payload for run in evidence.runs)
     names = [n for n in catalogue() if n != "task" and (loads or n != "loads")]
     usual = temperature_of(evidence)
-    ways = {"": usual} | ({} if _tracked(floor) else {TRACKED: usual}) | {WARMED: usual + WARMER}
+    tracked = any(c.stage in AT_TIP for c in floor)
+    ways = {"": usual} | ({} if tracked else {TRACKED: usual}) | {WARMED: usual + WARMER}
     for added, temperature in ways.items():
+        if added == WARMED:
+            yield Rehearsal(SAME, SAME_WHY, WARMED, _warmed(evidence, floor, temperature), elsewhere=False)
         for name in names:
             yield Rehearsal(name, WHY, added, _runs(name, evidence, floor, temperature, added == TRACKED))
 
@@ -47,8 +54,14 @@ def temperature_of(evidence: SherEvidence) -> float:
     return float(np.mean(known)) if known else REFERENCE_TEMPERATURE
 
 
-def _tracked(floor: Floors) -> bool:
-    return any(c.stage in AT_TIP for c in floor)
+def _warmed(evidence: SherEvidence, floor: Floors, temperature: float) -> Whitened:
+    """Return the first run of each recorded excitation at another temperature."""
+    first = [evidence.excitations.index(name) for name in dict.fromkeys(evidence.excitations)]
+    geometry = evidence.view(0).geometry
+    runs = [replace(evidence.runs[r], temperature=np.full(evidence.runs[r].ticks, temperature)) for r in first]
+    views = [SherView(run, evidence.robot, geometry) for run in runs]
+    told = [{c: x for c, x in evidence.data.residuals[r].items() if c in floor} for r in first]
+    return Whitened(views, told, [floor] * len(runs))
 
 
 def _runs(name: str, evidence: SherEvidence, floor: Floors, temperature: float, tracked: bool) -> Whitened:

@@ -1,0 +1,80 @@
+"""Runs that were never made: what a fit foretells of them on a machine whose laws are bent, and what that does to odds.
+
+Where its law was not yet looked at, nobody knows how a machine departs from its page. Labelled robots do so by a share
+of the law's power that differs from robot to robot; so the law is bent by each such share in turn.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.finding import Judged
+from sher3_diagnosis.fit.fitting import Fit, Term
+from sher3_diagnosis.fit.whitened import Whitened
+from sher3_diagnosis.judge.calibration.calibration import in_force
+from sher3_diagnosis.judge.evidence.bent import added, stray_share
+from sher3_diagnosis.judge.level import LEVELS
+from sher3_diagnosis.judge.probabilities import judged
+
+LABELLED = LEVELS[:4]
+"""Shares of a law's power by which it may be bent: the levels that labelled robots were drawn with."""
+OF_TODAY = ("law", "place", "anything", "spread")
+"""Evidence that further runs would change in a way that a drawn bend does not tell."""
+
+
+def foretold(found: Fit, terms: Sequence[Term], more: Whitened, level: float) -> list[dict[Channel, Array]]:
+    """Return what the terms of a fit add to further runs, per run and channel (N,), over the floor.
+
+    The law of the last of them is bent by a share `level` of its power.
+    """
+    out = [{c: np.zeros(len(y)) for c, y in seen.items()} for seen in more.target]
+    for i, term in enumerate(terms):
+        for r, total in enumerate(out):
+            for c in total:
+                own = term.adds(r, c, found.of(i))
+                total[c] = total[c] + (own * _bend(more, r, c, level) if level and term is terms[-1] else own)
+    return out
+
+
+def _bend(more: Whitened, run: int, channel: Channel, level: float) -> Array:
+    """Return the factors on a law in a run, (N,): one sine of the place's inputs in all runs for each component."""
+    inputs = np.concatenate([view.inputs(channel.actuator) for view in more.views])
+    scale = np.maximum(inputs.std(axis=0), np.finfo(float).tiny)
+    residual = more.residuals[run][channel]
+    rng = np.random.default_rng(round(1.0 / level))
+    rates = rng.standard_normal((inputs.shape[1], residual.values.shape[1])) * math.pi / math.sqrt(inputs.shape[1])
+    phase = rng.uniform(0.0, 2.0 * math.pi, residual.values.shape[1])
+    x = (more.views[run].inputs(channel.actuator) - inputs.mean(axis=0))[residual.ok] / scale
+    return np.asarray(1.0 + math.sqrt(2.0 * level) * np.sin(x @ rates + phase)).ravel()
+
+
+def with_bend(j: Judged, after: Fit, data: Whitened, recorded: int, worth: float) -> float:
+    """Return the probability of the library after further runs, on which the law of a cause is bent.
+
+    Args:
+        j: the cause as it is judged today.
+        after: the fit to recorded and further runs; the cause is its last term.
+        data: these runs, of which the further ones have no noise.
+        recorded: how many there are today.
+        worth: loss that the cause takes off all runs.
+    """
+    channel = j.item.channel
+    share = stray = sum(x for (r, _), x in after.loss.items() if r >= recorded) / max(worth, 1.0)
+    new = {
+        r: data.target[r][channel].reshape(-1, data.residuals[r][channel].values.shape[1])
+        for r in range(recorded, len(data.target))
+        if channel in data.target[r]
+    }
+    if new:
+        parts = [added(after, i, channel, new) for i in range(len(after.terms))]
+        rest = np.concatenate(list(new.values())) - sum(parts)
+        stray *= stray_share(np.sqrt(rest**2 + 1.0), parts[-1])  # beside the noise that the floor has
+    known = {name: x for name, x in j.item.numbers.items() if name not in OF_TODAY}
+    bent = {"left": known["left"] + share, "stray": known["stray"] + stray}
+    anew = judged(replace(j.item, numbers=known | bent), in_force(), j.closure)
+    return min(j.library, anew.library)
