@@ -6,7 +6,6 @@ from collections.abc import Sequence
 
 import numpy as np
 from sher3_diagnosis.channel import Array, Channel, Floors, Residual, Residuals
-from sher3_diagnosis.thresholds import EATEN
 
 from sher3_chain.axes.view import AxisView
 from sher3_chain.floors.foreseen import foreseen
@@ -21,16 +20,11 @@ def floors_of(records: Sequence[AxisView], found: Sequence[Residuals], repeats: 
 def unforeseen(view: AxisView, residual: Residual, channel: Channel) -> Array:
     """Return the standard deviation (1,) of white noise with the innovation of a residual, in the residual's unit.
 
-    Where a straight line leaves more than `EATEN` of the signal, the past motion and known inputs predict it too.
-    They also predict a part of the encoder's own noise, since differences correlate its samples; the floor keeps that
-    part.
+    A straight line, or the past motion and known inputs: whichever foresees more. Inputs also foresee a part of the
+    encoder's own noise, since differences correlate its samples; the floor keeps that part.
     """
-    plain = plain_innovation(view, residual, channel)
-    signal = np.sqrt(np.mean(residual.values[residual.ok] ** 2, axis=0))
-    if not (plain > EATEN * signal).any():
-        return plain
     noise = resolution_floors(view, UNIFORM * view.noise)[channel]
-    return np.minimum(plain, np.maximum(foreseen(view.run, residual), noise))
+    return np.minimum(plain_innovation(view, residual, channel), np.maximum(foreseen(view.run, residual), noise))
 
 
 def resolution_floors(view: AxisView, least: float = 0.0) -> Floors:

@@ -73,3 +73,20 @@ def test_a_late_effort_beside_friction_that_falls_with_speed(seed):
 def test_viscous_friction_that_a_plain_dry_one_hides_is_beside_the_one_that_falls_with_speed():
     """Neither is possible without the other; both went, and another motion was foretold seven times worse."""
     assert set(told(drawn_axis(7504))) == {"stribeck_friction", "viscous_friction", "gravity_load", "sensor_delay"}
+
+
+@pytest.mark.parametrize(
+    "seed",
+    [
+        21002,  # 1.5 periods of 1 ms, less than a tenth of a period of the filter's cut-off
+        21029,  # without it what is left is below a floor that is too large
+        21042,  # a search for play behind the encoder left more than the plain laws, both below the floor
+        21046,  # a wrong delay made all laws possible beside it; gain, mass and weight say the same
+    ],
+)
+def test_a_late_effort_beside_ordinary_causes(seed):
+    drawn = drawn_axis(seed)
+    found = told(drawn)
+    assert set(found) == set(drawn.truth)
+    late = found["sensor_delay"].parameters["effort_delay"]
+    assert late.low <= drawn.truth["sensor_delay"]["delay"] <= late.high

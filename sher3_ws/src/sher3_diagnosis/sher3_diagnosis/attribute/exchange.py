@@ -43,10 +43,10 @@ def _gain(evidence: Evidence, best: Fit, index: int, trial: Fit) -> float:
     """
     more = complexity(trial.terms[-1]) - complexity(best.terms[index])
     if more < 0:
-        return _over_floor(evidence, best) - _over_floor(evidence, trial) - PRICE * more
+        return over_floor(evidence, best) - over_floor(evidence, trial) - PRICE * more
     return best.total - trial.total - NEEDED * more
 
 
-def _over_floor(evidence: Evidence, found: Fit) -> float:
+def over_floor(evidence: Evidence, found: Fit) -> float:
     """Return the loss above the floor, channel by channel: what is spared in one pays for nothing in another."""
     return sum(max(0.0, loss - evidence.data.samples[key]) for key, loss in found.loss.items())

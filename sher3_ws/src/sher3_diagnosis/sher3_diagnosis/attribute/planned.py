@@ -7,7 +7,7 @@ from dataclasses import replace
 from sher3_common.progress import Say
 
 from sher3_diagnosis.attribute.candidates import Candidates, price
-from sher3_diagnosis.attribute.exchange import exchanged
+from sher3_diagnosis.attribute.exchange import exchanged, over_floor
 from sher3_diagnosis.attribute.plan import Opening, SearchPlan
 from sher3_diagnosis.attribute.richer import beside_richer, pays
 from sher3_diagnosis.attribute.rivals import Attribution, with_rivals
@@ -91,6 +91,5 @@ def _priced(found: Attribution) -> float:
 
 def _better(evidence: Evidence, plan: SearchPlan, opening: Opening, found: Fit, other: Fit) -> bool:
     """Return whether the fit of an opening has a loss above the floor that is smaller by the share it asks for."""
-    floor = sum(evidence.data.samples.values())
-    before, after = (x.total - floor + plan.beyond(evidence, x) for x in (found, other))
+    before, after = (over_floor(evidence, x) + plan.beyond(evidence, x) for x in (found, other))
     return after < (1.0 - opening.worth) * before

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from sher3_diagnosis.attribute.candidates import Candidates
-from sher3_diagnosis.attribute.ties import first_of_least
+from sher3_diagnosis.attribute.ties import TIE, first_of_least
 from sher3_diagnosis.channel import AT_TIP, Array
 from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.fit.fitting import Fit, Term, fit
@@ -107,17 +107,27 @@ def pruned_by(evidence: Evidence, current: Fit, worth: Callable[[Fit, int, Fit],
 
     Args:
         evidence: that the fit is of.
-        current: to be pruned; among causes missed equally the last chosen goes first.
+        current: to be pruned; among causes missed equally, such as a drive's gain beside mass and weight, that one goes
+            without which the next is missed least, the last chosen first.
         worth: whether a cause is to stay, given the fit with it, its index and the fit without it.
     """
-    first = len(evidence.nuisance)
-    while len(current.terms) > first + 1:
-        reduced = {i: without_term(evidence, current, i) for i in range(first, len(current.terms))}
-        least = first_of_least({i: reduced[i].total for i in sorted(reduced, reverse=True)})
-        if worth(current, least, reduced[least]):
+    while len(current.terms) > len(evidence.nuisance) + 1:
+        reduced = _reduced(evidence, current)
+        least = min(f.total for f in reduced.values())
+        tied = {i: f for i, f in reduced.items() if f.total <= least + TIE}
+        i = next(iter(tied))
+        if len(tied) > 1:
+            i = first_of_least({i: min(g.total for g in _reduced(evidence, f).values()) for i, f in tied.items()})
+        if worth(current, i, reduced[i]):
             break
-        current = reduced[least]
+        current = reduced[i]
     return current
+
+
+def _reduced(evidence: Evidence, current: Fit) -> dict[int, Fit]:
+    """Return the fits without each cause, the last chosen first."""
+    causes = range(len(evidence.nuisance), len(current.terms))
+    return {i: without_term(evidence, current, i) for i in reversed(causes)}
 
 
 def with_rivals(candidates: Candidates, current: Fit) -> Attribution:

@@ -8,8 +8,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Collection, Sequence
+from dataclasses import replace
 
-from sher3_diagnosis.attribute.candidates import Candidates, complexity
+from sher3_diagnosis.attribute.candidates import Candidates, complexity, possible
 from sher3_diagnosis.attribute.rivals import pruned_by, without_term
 from sher3_diagnosis.attribute.ties import TIE, first_of_least
 from sher3_diagnosis.channel import Channel
@@ -27,8 +28,9 @@ PASSES = 3
 def together(candidates: Candidates, gaps: Collection[Channel], left_over: Left, beside: Sequence[Term] = ()) -> Fit:
     """Return the plain laws that are worth their numbers, fitted at once; the null fit where none is.
 
-    A law whose shape is searched is tried beside all linear ones too: a ratio that is impossible by itself, because a
-    gap makes most of the difference, is possible beside the gap.
+    Shapes are searched twice: beside all linear laws, whatever their signs, then beside those that are possible. Beside
+    all of them a law that is not there comes out a little below zero as often as above; were that forbidden, a wrong
+    delay that lifts it above zero would be taken.
 
     Args:
         candidates: the evidence and the effects, of which the plain ones are taken.
@@ -38,21 +40,23 @@ def together(candidates: Candidates, gaps: Collection[Channel], left_over: Left,
     """
     laws = [(e, site) for e in candidates.effects if e.ordinary for site in candidates.sites(e)]
     laws = [(e, site) for e, site in laws if set(e.channels(site)) & set(gaps) and not _contained(e, site, beside)]
-    every = _linear(candidates, laws, beside)
-    current = without_impossible(candidates.evidence, every)
-    starts = {(e.id, site): [every] for e, site in laws} | {t.key: [] for t in every.terms}
+    every = _shaped(replace(candidates, possible=possible), laws, _linear(candidates, laws, beside))
+    current = _shaped(candidates, laws, without_impossible(candidates.evidence, every))
+    return pruned(candidates.evidence, current, left_over, relative=True)
+
+
+def _shaped(candidates: Candidates, laws: list[tuple[Effect, str]], current: Fit) -> Fit:
+    """Return a fit whose laws were searched again beside the others, in turn, while that explains more."""
     for _ in range(PASSES):
         before = current
         for effect, site in laws:
-            for start in [current, *starts[effect.id, site]]:
-                others = [t for t in start.terms if t.key != (effect.id, site)]
-                trial = candidates.best_plain(effect, site, others)
-                if trial and (start is not every or trial.admissible) and trial.total < current.total - TIE:
-                    current = trial
+            others = [t for t in current.terms if t.key != (effect.id, site)]
+            trial = candidates.best_plain(effect, site, others)
+            if trial is not None and trial.total < current.total - TIE:
+                current = trial
         if current is before:
             break
-        starts = {key: [] for key in starts}
-    return pruned(candidates.evidence, current, left_over, relative=True)
+    return current
 
 
 def _contained(effect: Effect, site: str, beside: Sequence[Term]) -> bool:

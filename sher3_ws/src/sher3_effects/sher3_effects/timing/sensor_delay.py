@@ -46,26 +46,21 @@ class SensorDelay(Page):
     finer = {"delay": (0.85, 0.95, 1.05, 1.2)}
     REST = (-0.5, 1.0)
     """Share of a searched delay that its coefficient may add; a finer delay is searched for what lies beyond."""
-    UNSAID = 2.0
-    """Delay of an effort, in periods, from which it is searched where nobody states its moment within one period."""
     LEAST = 1.0
     """Smallest delay of such an effort, in periods: less is the shape of a friction at a reversal."""
-    UNSEEN = 0.1
-    """The same in periods of the cut-off: by so much a noisy encoder shifts the moment of a reversal."""
 
     def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
         """Return delays of the load encoder (0) and of the effort (1), s, and the smallest that counts as a delay."""
         row, run = views[0].row(site), views[0].run
         late = [s * n * run.period for n in self.PERIODS for s in (1.0, -1.0) if n * run.period <= LONGEST_DELAY]
         which = [float(k) for k, x in enumerate((run.load, run.effort)) if x is not None and np.any(x[:, row])]
-        unsaid = run.UNSTATED * max(self.UNSAID * run.period, self.UNSEEN / run.bandwidth)
         least = run.UNSTATED * self.LEAST * run.period
         early = earliest(run.period) if views[0].axis(site).told else LONGEST_DELAY
         return [
             {"delay": t, "of_effort": k, "least": k * least}
             for k in which
             for t in late
-            if not k or (abs(t) >= unsaid and t >= -early)
+            if not k or (abs(t) >= least and t >= -early)
         ]
 
     def plain_shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
