@@ -29,6 +29,7 @@ OWN_FILES = {
     "sher3_cli/root.py": "the null device",
     "sher3_bringup/cli.py": "prints the demo script of the package",
     "sher3_bringup/processes/only_robot.py": "a lock, which has no content",
+    "sher3_common/compiling/turn.py": "a lock, which has no content",
     "sher3_view/page.py": "the page's own parts, which come with the package",
     "sher3_challenge/cases/seal.py": "digest of the folder it has just written",
     "sher3_drivers/pedal/hid.py": "the pedal, a device",

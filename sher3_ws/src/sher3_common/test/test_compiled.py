@@ -65,6 +65,26 @@ def test_a_changed_constant_below_is_compiled_in(project: Path) -> None:
     assert other != folder
 
 
+TOGETHER = """
+import sys, time
+from pathlib import Path
+from sher3_top.law import law, ratio
+Path(sys.argv[1]).touch()
+while len(list(Path(sys.argv[1]).parent.glob("ready*"))) < 2:
+    time.sleep(0.001)
+law(3.0), ratio(1.0, 2.0)
+print(sum(law.stats.cache_hits.values()) + sum(ratio.stats.cache_hits.values()))
+"""
+
+
+def test_processes_that_start_together_compile_nothing_twice(project: Path) -> None:
+    environment = {**os.environ, "PYTHONPATH": str(project), "XDG_CACHE_HOME": str(project.parent / "cache")}
+    environment.pop("NUMBA_CACHE_DIR", None)
+    commands = [[sys.executable, "-c", TOGETHER, str(project.parent / f"ready{n}")] for n in range(2)]
+    both = [subprocess.Popen(c, env=environment, stdout=subprocess.PIPE, text=True) for c in commands]
+    assert sum(int(process.communicate(timeout=60)[0]) for process in both) == 2
+
+
 def test_the_users_folder_stays_in_force(project: Path, tmp_path: Path) -> None:
     *_, folder, _ = run(project, NUMBA_CACHE_DIR=tmp_path / "chosen")
     assert Path(folder).parent == tmp_path / "chosen"

@@ -9,6 +9,7 @@ from typing import Any
 from numba.core.caching import CompileResultCacheImpl, FunctionCache, UserWideCacheLocator
 
 from sher3_common.compiling.telling import TELLING
+from sher3_common.compiling.turn import Turn
 
 
 class SourceNamedCache(FunctionCache):
@@ -31,15 +32,25 @@ class SourceNamedCache(FunctionCache):
 
         self._impl_class = Implementation
         super().__init__(function)
+        self._turn = Turn(folder / f"{self._impl.filename_base}.turn")
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
-        """Return the machine code of these types, None where it must be compiled, which is then told."""
+        """Return the machine code of these types, None where it must be compiled, which is then told.
+
+        What another process compiles at this moment is waited for.
+        """
         found = super().load_overload(sig, target_context)
         if found is None:
-            TELLING.begins()
+            self._turn.take()
+            found = super().load_overload(sig, target_context)
+            if found is None:
+                TELLING.begins()
+            else:
+                self._turn.leave()
         return found
 
     def save_overload(self, sig: Any, data: Any) -> None:
         """Keep the machine code that was compiled."""
         super().save_overload(sig, data)
+        self._turn.leave()
         TELLING.ended()
