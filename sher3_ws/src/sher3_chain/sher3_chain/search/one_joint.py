@@ -5,18 +5,13 @@ from __future__ import annotations
 from sher3_diagnosis.attribute.candidates import possible
 from sher3_diagnosis.fit.fitting import Fit
 
-from sher3_chain.thresholds import CONFOUNDED
-
 
 def of_one_joint(trial: Fit) -> bool:
     """Return whether the new cause is possible, and all others beside it still are.
 
     Of what hides behind one encoder one cause is named: a load that rings looks like one that is thrown across a gap.
-    One law of dry friction holds an axis: two of them side by side have the loop of a play. A cause that is many times
-    what all of them make together is taken back by another one: over a short travel a weight and a cable are alike.
+    One law of dry friction holds an axis: two of them side by side have the loop of a play.
     """
-    if trial.cancelled * CONFOUNDED > 1.0:
-        return False
     unseen = sum(t.effect.unseen for t in trial.terms)
     dry = sum(t.effect.dry for t in trial.terms)
     return unseen <= 1 and dry <= 1 and possible(trial) and trial.admissible
