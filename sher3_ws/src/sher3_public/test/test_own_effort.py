@@ -53,6 +53,18 @@ def test_a_rotor_beside_what_the_step_adds_is_named_with_its_own_size():
     assert cause.parameters["inertia"].value == pytest.approx(0.03, rel=0.05)
 
 
+def test_a_weak_servo_of_a_simulator_is_a_gain_and_no_rotor():
+    """Its own effort is off from the law of the model; that of the other joints says whose the efforts are."""
+    xml = arm("implicitfast")
+    root = ElementTree.fromstring(xml)
+    weak = next(iter(root.iter("position")))
+    weak.attrib.update({name: str(0.8 * float(weak.get(name))) for name in ("kp", "kv")})
+    log = logged(ElementTree.tostring(root, encoding="unicode"), SEEDS["implicitfast"])
+    (cause,) = diagnosed(xml, log, log.ctrl).causes
+    assert (cause.effect, cause.actuator) == ("controller_gain", weak.get("joint"))
+    assert cause.parameters["relative"].value == pytest.approx(-0.2, abs=0.005)
+
+
 JUMPING = """<mujoco><option timestep="0.001" integrator="implicitfast"/><worldbody><body>
 <joint name="wrist" axis="0 0 1" armature="0.002" damping="0.05"/><geom type="capsule" fromto="0 0 0 .2 0 0" size=".02"
 mass=".3"/></body></worldbody><actuator><position joint="wrist" kp="240" kv="16"/></actuator></mujoco>"""
@@ -78,3 +90,14 @@ def test_a_start_with_a_jump_at_a_thousand_samples_a_second_is_still_the_simulat
 def test_what_is_stated_holds():
     xml = arm("RK4")
     assert diagnosed(xml, logged(xml, SEEDS["RK4"]), simulated=False).status != "no_gap"
+
+
+def test_weak_gains_whose_force_was_not_recorded_may_as_well_be_a_weak_drive():
+    xml = arm("implicitfast")
+    root = ElementTree.fromstring(xml)
+    weak = next(iter(root.iter("position")))
+    weak.attrib.update({name: str(0.8 * float(weak.get(name))) for name in ("kp", "kv")})
+    log = logged(ElementTree.tostring(root, encoding="unicode"), SEEDS["implicitfast"])
+    (cause,) = gap.diagnose(xml, log.time, log.ctrl, log.qpos).causes
+    assert (cause.effect, cause.actuator) == ("torque_constant", weak.get("joint"))
+    assert "controller_gain" in cause.rivals and cause.parameters["relative"].value == pytest.approx(-0.2, abs=0.01)

@@ -53,6 +53,9 @@ IN_GAIN = (GAIN, PAYLOAD)
 IN_INERTIAS = (*IN_GAIN, WEIGHT)
 """Quantities that inertias found from the data contain."""
 
+OF_LAW = ("torque_constant", "controller_gain")
+"""Effects that are one where no effort was recorded: of a servo a weak drive does what weak gains do."""
+
 
 @dataclass(frozen=True)
 class Manipulator(Chain[ArmMotionEvidence]):
@@ -131,7 +134,10 @@ class Manipulator(Chain[ArmMotionEvidence]):
         causes = within_bounds(causes, attribution.told, self.effects(evidence))
         told = zip(map(with_late_readings, causes), (term for term, _ in attribution.told), strict=True)
         causes = [with_closure(of_a_sum(cause, term, self.model), term.shape) for cause, term in told]
-        return evidence, [with_hidden(in_own_unit(c, RECORDED)) if c.actuator in evidence.shares else c for c in causes]
+        weak = {j.name for j in self.described.joints if j.by_its_law}
+        causes = [with_hidden(c, OF_LAW) if c.actuator in weak else c for c in causes]
+        own, same = evidence.shares, same_force()
+        return evidence, [with_hidden(in_own_unit(c, RECORDED), same) if c.actuator in own else c for c in causes]
 
     def remarks(self, finding: Finding[ArmMotionEvidence]) -> list[str]:
         """Say what cannot be told apart, which gains were found, and which joints were not judged."""
@@ -231,9 +237,8 @@ def slip_notes(evidence: ArmMotionEvidence) -> list[str]:
     ]
 
 
-def with_hidden(cause: Cause) -> Cause:
-    """Return a cause with the rivals that it can by no motion be told from while the drive gain is not known."""
-    same = same_force()
+def with_hidden(cause: Cause, same: Sequence[str]) -> Cause:
+    """Return a cause that is one of the `same` with the others as rivals, from which no motion tells it."""
     if cause.effect not in same:
         return cause
     hidden = [e for e in same if e != cause.effect and e not in cause.rivals]
