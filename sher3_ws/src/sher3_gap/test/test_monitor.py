@@ -4,25 +4,14 @@ import json
 import math
 
 import pytest
-from sher3_common.samples import JointSample, WrenchSample
+from sher3_common.samples import JointSample
 from sher3_effects import plants
 from sher3_gap.excitation import excite
 from sher3_gap.experiments.rehearsal import rehearse
 from sher3_gap.live.monitor import HELD, TOPICS, Monitor
-from simulated import ROBOT
+from simulated import ROBOT, samples
 
 FRICTION = plants()["coulomb_friction"]("delta_2", force=1.5)
-
-
-def samples(run, ticks=2300):
-    """Yield (topic, sample) tick by tick as a graph would deliver them."""
-    fields = {t: [run[t].columns.get(f) for f in ("position", "velocity", "effort")] for t in TOPICS[:5]}
-    wrench = run["force/measured_cf"]
-    for k in range(min(ticks, len(wrench.stamp))):
-        stamp = int(wrench.stamp[k])
-        for topic, columns in fields.items():
-            yield topic, JointSample(stamp, *(None if c is None else tuple(c[k]) for c in columns))
-        yield "force/measured_cf", WrenchSample(stamp, (*wrench.force[k], *wrench.torque[k]))
 
 
 def judged(effects=(), known=(), label="sweep", skip=lambda topic, sample: False):

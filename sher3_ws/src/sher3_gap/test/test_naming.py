@@ -11,8 +11,7 @@ from sher3_gap.experiments.rehearsal import rehearse
 from sher3_gap.live.monitor import Monitor
 from sher3_gap.live.naming import LEAST, Naming, pieces
 from sher3_sim import Plant
-from simulated import ROBOT
-from test_monitor import samples
+from simulated import ROBOT, samples
 
 SWEEP = excite("sweep", ROBOT)
 
