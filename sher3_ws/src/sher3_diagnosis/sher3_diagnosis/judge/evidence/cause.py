@@ -159,20 +159,21 @@ def free_laws(
     step = max(1, len(signal) // ROWS)
     picked = {r: np.flatnonzero(evidence.data.residuals[r][channel].ok)[::step] for r in left}
     signal = np.concatenate([white[r][::step] for r in left])
-    record = {id(v): n for n, v in enumerate(evidence.views)}  # blocks of one record share a view
-    run = np.concatenate([np.full(len(picked[r]), record[id(evidence.views[r])]) for r in left])
+    views = {id(v): v for v in (evidence.views[r] for r in left)}  # blocks of one record share a view
+    felt = {key: v.quantities(channel.actuator) for key, v in views.items()}  # type: ignore[attr-defined]
+    whole = {key: v.everything() for key, v in views.items() if isinstance(v, Recorded)}
+    run = np.concatenate([np.full(len(picked[r]), list(views).index(id(evidence.views[r]))) for r in left])
     own, place, rest = [], [], []
     for r, rows in picked.items():
-        view = evidence.views[r]
-        known = view.quantities(channel.actuator)  # type: ignore[attr-defined]
+        known = felt[key := id(evidence.views[r])]
         others = known.keys() - set(inputs)
         own.append(_stacked(known, known.keys() - others, rows))
         place.append(_stacked(known, others - ELSEWHERE, rows))
-        rest.append(view.everything()[rows] if isinstance(view, Recorded) else _stacked(known, others, rows))
+        rest.append(whole[key][rows] if key in whole else _stacked(known, others, rows))
     losses = loss_left([np.vstack(own), np.vstack(place), np.vstack(rest)], signal, run)
     before = float(np.sum(signal**2)) / len(signal)
-    law, whole, anything = ((before - x) / width for x in losses)
-    return law, whole, anything
+    law, of_place, anything = ((before - x) / width for x in losses)
+    return law, of_place, anything
 
 
 ELSEWHERE = frozenset({"time", "temperature", "posture"})
