@@ -56,8 +56,9 @@ def test_friction_that_falls_with_speed_beside_a_spring_a_payload_and_viscosity(
     assert {"stribeck_friction", "spring_torque", "payload_mass"} < set(drawn.truth)
     found = told(drawn)
     assert set(found) == {"stribeck_friction", "spring_torque", "viscous_friction", "torque_constant"}
-    sliding = found["stribeck_friction"].parameters["force"]
-    assert sliding.low <= drawn.truth["stribeck_friction"]["force"] <= sliding.high
+    # How often the interval holds the truth is counted over many machines (`bench/drawn_machines.py`), not on one.
+    sliding = found["stribeck_friction"].parameters["force"].value
+    assert sliding == pytest.approx(drawn.truth["stribeck_friction"]["force"], rel=0.03)
 
 
 @pytest.mark.parametrize("seed", [3003, pytest.param(3019, marks=pytest.mark.slow)])
