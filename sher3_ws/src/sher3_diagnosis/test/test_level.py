@@ -42,7 +42,8 @@ def test_other_places_tell_the_level():
 def test_what_is_left_counts_in_units_of_the_level():
     assert at_level(NUMBERS, 10.0 * USUAL) == pytest.approx(NUMBERS | {"left": 0.02})
     free = {"law": 0.1, "anything": 0.01}
-    assert free.items() <= at_level(NUMBERS | free, 10.0 * USUAL).items()  # whose law it follows has no level
+    assert at_level(NUMBERS | free, 10.0 * USUAL).items() >= {("anything", 0.01)}  # whose law it follows has no level
+    assert "law" not in at_level(NUMBERS | free, USUAL)  # and is asked once
     assert at_level(NUMBERS, 0.003) == NUMBERS  # none is better than the labelled robots
 
 
@@ -58,15 +59,17 @@ def test_the_odds_over_all_levels_add_up_to_one():
         assert j.item.numbers["left"] == 0.2
 
 
+@pytest.mark.parametrize("others", [False, True])
 @pytest.mark.parametrize("missed", [1.0, 0.5, 0.1])
-def test_the_less_of_what_is_left_no_function_explains_the_likelier_is_a_foreign_law(missed):
+def test_the_less_of_what_is_left_no_function_explains_the_likelier_is_a_foreign_law(missed, others):
     def odds_of(**told):
         (found,) = judged_together([item("a", **told)], [Interval(value=0.8)], in_force(), True)
         return found.outside / found.library
 
     exponent, even = LAWFUL
-    free = {"law": 0.2 * missed, "anything": 0.2 * missed}  # of 0.2 that are left
-    assert odds_of(**free) == pytest.approx(odds_of() * (even / missed) ** exponent, rel=0.2)  # `foreign` is told too
+    free = {"law": 0.2 if others else 0.2 * missed, "anything": 0.2 * missed}  # of 0.2 that are left
+    shares = missed * (missed if others else 1.0)  # what other inputs explain counts in both questions
+    assert odds_of(**free) == pytest.approx(odds_of() * (even**2 / shares) ** exponent)
     assert lawful(NUMBERS) == 1.0  # where nothing was looked at
 
 

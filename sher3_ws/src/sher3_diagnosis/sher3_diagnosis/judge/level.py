@@ -29,13 +29,12 @@ SPREAD = 1.0
 arms in motion, 0.3 on arms seen from outside (`bench/imperfect.py`), and more on machines whose parts are unlike."""
 FOREIGN = (0.3, 0.2, 1.0)
 """Share of places whose cause is foreign, and middle and spread of what is left there: it tells no level."""
-LAWFUL = (1.5, 0.65)
-"""Exponent of the share that no function explains, and the share at which it speaks neither way. Likeliest on 77 places
-of axes and arms with right causes and 87 with foreign ones, which count half: 1.7 and 0.67 (`bench/imperfect.py`,
-`bench/other_odds.py`); without axes, arms or magnets the exponent is 1.6, 2.7 or 1.2, the share 0.73, 0.75 or 0.60."""
+LAWFUL = (1.25, 0.6)
+"""Exponent of the shares that no function explains, and their mean at which they speak neither way. Of 1 to 1.5 and 0.5
+to 0.7 the likeliest on 174 places of axes and arms, of which half have foreign causes that count half, and on their
+causes (`bench/imperfect.py`, `bench/other_odds.py`)."""
 SHARES = ("left", "stray")
-"""Evidence that is a share of the gap. What free laws take off what is left is looked at as it is: whose law it
-follows is no matter of a level."""
+"""Evidence that is a share of the gap."""
 
 
 def levels_told(items: Sequence[Item]) -> list[Array]:
@@ -48,9 +47,12 @@ def levels_told(items: Sequence[Item]) -> list[Array]:
 
 
 def at_level(numbers: Mapping[str, float], level: float) -> dict[str, float]:
-    """Return the evidence of a cause with its shares in units of a level, that of labelled robots or a worse one."""
+    """Return the evidence of a cause with its shares in units of a level, that of labelled robots or a worse one.
+
+    Whose law the rest follows is no matter of a level: `lawful` asks that once.
+    """
     worse = max(1.0, level / USUAL)
-    return {name: x / worse if name in SHARES else x for name, x in numbers.items()}
+    return {name: x / worse if name in SHARES else x for name, x in numbers.items() if name != "law"}
 
 
 def lawful(numbers: Mapping[str, float]) -> float:
@@ -58,10 +60,13 @@ def lawful(numbers: Mapping[str, float]) -> float:
 
     Of a machine whose level nobody knows, how much is left tells little; whether it is a law tells more. A foreign law
     is a function of something: free functions of what was recorded miss a tenth of it, or a hundredth. What a right
-    cause leaves is drift, waves and what nobody recorded: they mostly miss more than half.
+    cause leaves is drift, waves and what nobody recorded: they mostly miss more than half. What only other inputs than
+    the cause's own explain is asked for twice: it is no other shape of its law.
     """
+    if "anything" not in numbers:
+        return 1.0
     exponent, even = LAWFUL
-    return (even / unexplained(numbers)) ** exponent if "anything" in numbers else 1.0
+    return float((even**2 / (unexplained(numbers) * unexplained(numbers, "law"))) ** exponent)
 
 
 def _told(likely: Sequence[Array]) -> Array:
