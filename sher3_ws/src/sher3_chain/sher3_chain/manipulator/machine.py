@@ -53,9 +53,6 @@ IN_GAIN = (GAIN, PAYLOAD)
 IN_INERTIAS = (*IN_GAIN, WEIGHT)
 """Quantities that inertias found from the data contain."""
 
-OF_LAW = ("torque_constant", "controller_gain")
-"""Effects that are one where no effort was recorded: of a servo a weak drive does what weak gains do."""
-
 
 @dataclass(frozen=True)
 class Manipulator(Chain[ArmMotionEvidence]):
@@ -135,7 +132,8 @@ class Manipulator(Chain[ArmMotionEvidence]):
         told = zip(map(with_late_readings, causes), (term for term, _ in attribution.told), strict=True)
         causes = [with_closure(of_a_sum(cause, term, self.model), term.shape) for cause, term in told]
         weak = {j.name for j in self.described.joints if j.by_its_law}
-        causes = [with_hidden(c, OF_LAW) if c.actuator in weak else c for c in causes]
+        alike = {e.id: (e.id, *e.indistinct) for e in self.effects(evidence)}
+        causes = [with_hidden(c, alike[c.effect]) if c.actuator in weak and c.effect in alike else c for c in causes]
         own, same = evidence.shares, same_force()
         return evidence, [with_hidden(in_own_unit(c, RECORDED), same) if c.actuator in own else c for c in causes]
 

@@ -32,6 +32,7 @@ class GainOfLaw(ControllerGain):
 
     kinds = ("law",)
     seen_at = (("", ""),)
+    indistinct = ("torque_constant",)
     above = -1.0
     """Relative change at which nothing of a gain is left: what answers the other way round is no gain."""
     discrete = frozenset({"part"})

@@ -22,6 +22,7 @@ class TorqueConstant(Page):
     kinds = ("robot", "axis")
     plain = True
     scales = "drive gain"
+    indistinct = ("controller_gain",)
     needs = ("drive", "forces")
     best = Best("sweep", "long constant-speed strokes separate ratios from offsets")
     leaves_out = "its bend at large forces"

@@ -216,11 +216,11 @@ class Recording:
         )
 
     def _state(self, stamp: int) -> str:
-        """Return the operating state at a time, nothing where it was not recorded."""
+        """Return the operating state before a time, nothing where it was not recorded."""
         if "operating_state" not in self._run:
             return ""
         stream = self._run["operating_state"]
-        before = int(np.searchsorted(stream.stamp, stamp, side="right"))
+        before = int(np.searchsorted(stream.stamp, stamp))
         return str(stream.data[before - 1]) if before else ""
 
     def _elapsed(self, stamp: int, first: int) -> float:
