@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from sher3_diagnosis.fit.fitting import fit, make_term
 from sher3_diagnosis.flow import diagnose
-from sher3_diagnosis.judge.foretold import foretold
+from sher3_diagnosis.judge.experiments.foretold import foretold
 from sher3_diagnosis.machine import Rehearsal
 from toy import DIRECTION, Column, Toy, case, evidence_of, stroke
 

@@ -22,6 +22,15 @@ def diagnosed(xml, log, control=None, **stated):
     return gap.diagnose(xml, log.time, control, log.qpos, log.actuator_force * gear, **stated)
 
 
+def weakened():
+    """Return a model, its joint whose gains are 20 % less in the machine, and the log of the machine."""
+    xml = arm("implicitfast")
+    root = ElementTree.fromstring(xml)
+    weak = next(iter(root.iter("position")))
+    weak.attrib.update({name: str(0.8 * float(weak.get(name))) for name in ("kp", "kv")})
+    return xml, weak.get("joint"), logged(ElementTree.tostring(root, encoding="unicode"), SEEDS["implicitfast"])
+
+
 @pytest.mark.parametrize("method", SEEDS)
 def test_efforts_alone_of_a_healthy_simulator_are_no_gap(method):
     xml = arm(method)
@@ -55,13 +64,9 @@ def test_a_rotor_beside_what_the_step_adds_is_named_with_its_own_size():
 
 def test_a_weak_servo_of_a_simulator_is_a_gain_and_no_rotor():
     """Its own effort is off from the law of the model; that of the other joints says whose the efforts are."""
-    xml = arm("implicitfast")
-    root = ElementTree.fromstring(xml)
-    weak = next(iter(root.iter("position")))
-    weak.attrib.update({name: str(0.8 * float(weak.get(name))) for name in ("kp", "kv")})
-    log = logged(ElementTree.tostring(root, encoding="unicode"), SEEDS["implicitfast"])
+    xml, joint, log = weakened()
     (cause,) = diagnosed(xml, log, log.ctrl).causes
-    assert (cause.effect, cause.actuator) == ("controller_gain", weak.get("joint"))
+    assert (cause.effect, cause.actuator) == ("controller_gain", joint)
     assert cause.parameters["relative"].value == pytest.approx(-0.2, abs=0.005)
 
 
@@ -93,11 +98,7 @@ def test_what_is_stated_holds():
 
 
 def test_weak_gains_whose_force_was_not_recorded_may_as_well_be_a_weak_drive():
-    xml = arm("implicitfast")
-    root = ElementTree.fromstring(xml)
-    weak = next(iter(root.iter("position")))
-    weak.attrib.update({name: str(0.8 * float(weak.get(name))) for name in ("kp", "kv")})
-    log = logged(ElementTree.tostring(root, encoding="unicode"), SEEDS["implicitfast"])
+    xml, joint, log = weakened()
     (cause,) = gap.diagnose(xml, log.time, log.ctrl, log.qpos).causes
-    assert (cause.effect, cause.actuator) == ("torque_constant", weak.get("joint"))
+    assert (cause.effect, cause.actuator) == ("torque_constant", joint)
     assert "controller_gain" in cause.rivals and cause.parameters["relative"].value == pytest.approx(-0.2, abs=0.01)

@@ -14,8 +14,8 @@ from sher3_diagnosis.judge.calibration.calibration import Calibration, in_force
 from sher3_diagnosis.judge.calibration.typical import RARE
 from sher3_diagnosis.judge.causes import ordered, places_of
 from sher3_diagnosis.judge.costs import DEFAULT, Costs
+from sher3_diagnosis.judge.experiments.next_experiment import next_experiment
 from sher3_diagnosis.judge.meaning import open_sizes
-from sher3_diagnosis.judge.next_experiment import next_experiment
 from sher3_diagnosis.judge.probabilities import of_first, reproduced
 from sher3_diagnosis.judge.remainder import remainder
 from sher3_diagnosis.judge.status import answer_to_exact, status_of

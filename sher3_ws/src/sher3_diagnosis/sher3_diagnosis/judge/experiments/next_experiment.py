@@ -25,7 +25,7 @@ from sher3_diagnosis.fit.term import again
 from sher3_diagnosis.fit.whitened import Whitened
 from sher3_diagnosis.judge.bets import LISTED, term_of
 from sher3_diagnosis.judge.calibration.calibration import in_force
-from sher3_diagnosis.judge.foretold import LABELLED, foretold, with_bend
+from sher3_diagnosis.judge.experiments.foretold import LABELLED, foretold, with_bend
 from sher3_diagnosis.judge.probabilities import shares_of
 from sher3_diagnosis.machine import Machine, Rehearsal
 from sher3_diagnosis.verdict import NextExperiment

@@ -33,24 +33,29 @@ def foretold(found: Fit, terms: Sequence[Term], more: Whitened, level: float) ->
     The law of the last of them is bent by a share `level` of its power.
     """
     out = [{c: np.zeros(len(y)) for c, y in seen.items()} for seen in more.target]
+    bends = {c: _bends(more, c, level) for c in set().union(*out)} if level else {}
     for i, term in enumerate(terms):
         for r, total in enumerate(out):
             for c in total:
                 own = term.adds(r, c, found.of(i))
-                total[c] = total[c] + (own * _bend(more, r, c, level) if level and term is terms[-1] else own)
+                total[c] = total[c] + (own * bends[c][r] if level and term is terms[-1] else own)
     return out
 
 
-def _bend(more: Whitened, run: int, channel: Channel, level: float) -> Array:
-    """Return the factors on a law in a run, (N,): one sine of the place's inputs in all runs for each component."""
-    inputs = np.concatenate([view.inputs(channel.actuator) for view in more.views])
-    scale = np.maximum(inputs.std(axis=0), np.finfo(float).tiny)
-    residual = more.residuals[run][channel]
+def _bends(more: Whitened, channel: Channel, level: float) -> dict[int, Array]:
+    """Return the factors on a law per run, (N,): one sine of the place's inputs in all runs for each component."""
+    inputs = [view.inputs(channel.actuator) for view in more.views]
+    together = np.concatenate(inputs)
+    middle, scale = together.mean(axis=0), np.maximum(together.std(axis=0), np.finfo(float).tiny)
+    seen = {r: found[channel] for r, found in enumerate(more.residuals) if channel in found}
+    width = next(iter(seen.values())).values.shape[1]
     rng = np.random.default_rng(round(1.0 / level))
-    rates = rng.standard_normal((inputs.shape[1], residual.values.shape[1])) * math.pi / math.sqrt(inputs.shape[1])
-    phase = rng.uniform(0.0, 2.0 * math.pi, residual.values.shape[1])
-    x = (more.views[run].inputs(channel.actuator) - inputs.mean(axis=0))[residual.ok] / scale
-    return np.asarray(1.0 + math.sqrt(2.0 * level) * np.sin(x @ rates + phase)).ravel()
+    rates = rng.standard_normal((together.shape[1], width)) * math.pi / math.sqrt(together.shape[1])
+    phase = rng.uniform(0.0, 2.0 * math.pi, width)
+    return {
+        r: (1.0 + math.sqrt(2.0 * level) * np.sin((inputs[r] - middle)[x.ok] / scale @ rates + phase)).ravel()
+        for r, x in seen.items()
+    }
 
 
 def with_bend(j: Judged, after: Fit, data: Whitened, recorded: int, worth: float) -> float:
