@@ -35,7 +35,8 @@ class Isolability:
 
     Attributes:
         sources: names of the recorded signals.
-        groups: effect ids that show in the same equations, so that only the shape of their signature tells them apart.
+        groups: effect ids that show in the same equations, largest group first: only the shape of their signature tells
+            them apart; groups of one are told apart.
         invisible: effect ids that none of these signals shows.
     """
 

@@ -6,8 +6,8 @@ from sher3_diagnosis.finding import Candidate, ExactFinding, Item, Judged
 from sher3_diagnosis.flow import diagnose
 from sher3_diagnosis.judge.bets import NONE, exact_place, placed, shares
 from sher3_diagnosis.judge.probabilities import of_first
-from sher3_diagnosis.report.odds import odds, places_of_bets
-from sher3_diagnosis.verdict import Answer, Cause, Interval, Residual, Verdict, Where
+from sher3_diagnosis.report.odds import answered, odds, sizes
+from sher3_diagnosis.verdict import Answer, Cause, Interval, Parameter, Residual, Verdict, Where
 from toy import DIRECTION, Column, Toy, case
 
 WHERE = Where(stage="transport", actuator="all", gap=1e-3, floor=1e-9, unit="m/s", regime="", confidence=1.0)
@@ -72,18 +72,25 @@ def test_on_every_machine_what_one_would_bet_adds_up_to_one(size, without):
 def spoken(*answers, status="outside_library"):
     place = placed(WHERE, answers)
     verdict = Verdict.model_construct(status=status, places=[place], costs={"name": 1.0}, causes=[])
-    return odds(verdict), places_of_bets(verdict)
+    return odds(verdict)
 
 
 def test_the_headline_speaks_the_odds():
     bet = Answer(causes=[cause()], probability=0.4988, closure=Interval(value=0.97))
     lacks = Answer(answer="outside_library", probability=0.5005)
-    text, (shown,) = spoken(bet, lacks)
+    text = spoken(bet, lacks)
     assert text == "command delay on all axes, 50 %: closes 97 %; or something like it that the library lacks, 50 %"
-    assert [r.probability for r in shown.rows] == ["50 %", "50 %"]
     rare = bet.model_copy(update={"probability": 0.07})
-    text, _ = spoken(rare, lacks.model_copy(update={"probability": 0.93}))
+    text = spoken(rare, lacks.model_copy(update={"probability": 0.93}))
     assert text.startswith("something that the library lacks in transport, all axes, 93 %; or command delay on all")
     sure = bet.model_copy(update={"probability": 0.99})
-    assert spoken(sure, lacks.model_copy(update={"probability": 0.01}), status="attributed")[0] == ""
-    assert spoken(rare.model_copy(update={"probability": 0.01}), lacks)[0] == ""
+    assert spoken(sure, lacks.model_copy(update={"probability": 0.01}), status="attributed") == ""
+    assert spoken(rare.model_copy(update={"probability": 0.01}), lacks) == ""
+
+
+def test_an_answer_is_its_causes_and_the_sizes_that_are_told():
+    told = Parameter(value=2e-3, low=1e-3, high=3e-3, unit="s")
+    late = cause().model_copy(update={"parameters": {"delay": told, "skew": told.model_copy(update={"low": -1e-3})}})
+    assert answered(Answer(causes=[late], probability=0.5)) == "Command delay on all axes"
+    assert sizes(Answer(causes=[late], probability=0.5)) == "delay 2 ms (1 ms … 3 ms)"
+    assert answered(Answer(answer="no_gap", probability=0.5)) == "No gap"

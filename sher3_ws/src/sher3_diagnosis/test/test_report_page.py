@@ -8,7 +8,6 @@ import pytest
 from sher3_diagnosis.flow import diagnose
 from sher3_diagnosis.report.causes import cause_cards, separates
 from sher3_diagnosis.report.chain import AT_FLOOR, GAP, chain
-from sher3_diagnosis.report.closures import closure_bars
 from sher3_diagnosis.report.page import render
 from sher3_diagnosis.report.traces import scale_of
 from sher3_diagnosis.reporter import Isolability, Reporter, counted
@@ -36,17 +35,18 @@ def test_the_page_stands_alone_and_answers_first(rubbing):
     assert "What these topics can tell apart" not in page  # the machine does not say
 
 
-def test_closures_are_bars_in_percent_of_the_gap():
+def test_closures_are_bars_in_percent_of_the_gap(rubbing):
+    """Less than none of the gap is a bar of no length, and its interval begins there."""
     cause = Cause(
         effect="backlash", family="lost_motion", stage="transmission", actuator="tilt", parameters={},
         closure=Interval(value=0.95, low=-0.1, high=1.0),
     )  # fmt: skip
     where = Where(stage="transmission", actuator="tilt", gap=2.0, floor=1.0, unit="m", regime="", confidence=1.0)
     answer = Verdict(status="attributed", where=[where], causes=[cause], closure=Closure(tip=Interval(value=-0.2)))
-    one, tip = closure_bars(answer, "at the tip")
-    assert (one.name, one.text, one.value, one.low, one.high) == ("Backlash, tilt", "95 %", 95.0, 0.0, 100.0)
-    assert (tip.name, tip.text, tip.value, tip.low) == ("all causes, at the tip", "-20 %", 0.0, None)
-    assert closure_bars(Verdict(status="no_gap"), "") == []
+    page = render(replace(rubbing, verdict=answer), "toy")
+    one, tip = re.findall(r'<div class="bar shut.*?"><span>(.*?)</span><div>(.*?)</div><b>(.*?)</b></div>', page)
+    assert one[::2] == ("Backlash, tilt", "95 %") and "width: 95.0%" in one[1] and "left: 0.0%; right: 0.0%" in one[1]
+    assert tip[::2] == ("all causes, at the tip", "-20 %") and "width: 0.0%" in tip[1] and "<i" not in tip[1]
 
 
 def test_a_gap_without_a_cause_has_no_corrected_curve():
@@ -79,8 +79,8 @@ def test_stages_without_data_are_shown_where_the_machine_asks(rubbing):
 
 
 def test_a_card_says_what_came_close(rubbing):
-    (card,) = cause_cards(rubbing, Isolability([], [frozenset({"direction", "speed"})], frozenset()))
-    assert card.title == "Direction on axis" and card.alike == ["Speed"]
+    (card,) = cause_cards(rubbing)
+    assert (card.cause.effect, card.cause.actuator) == ("direction", "axis")
     assert "Speed" in [r.name for r in card.rivals] and not any(r.kept for r in card.rivals)
 
 
@@ -94,6 +94,20 @@ def test_no_rival_is_without_a_reason():
     assert separates(SPEED, SPEED) == "the same effect at another place: its own axis moves it"
     warm = Column("warm", "drift", "warmth", inputs=("temperature",))
     assert separates(SPEED, warm) == "Warm depends on temperature, speed on nothing"
+
+
+def test_effects_of_one_group_stand_beside_a_cause(rubbing):
+    class Says(Reporter):
+        def isolability(self, parts):
+            return Isolability(["effort"], [frozenset({"direction", "speed"})], frozenset({"drive_lag"}))
+
+    class Saying(Toy):
+        def reporter(self):
+            return Says()
+
+    page = render(replace(rubbing, machine=Saying()), "toy")
+    assert "Shows in the same equations as: speed." in page
+    assert "<code>effort</code>" in page and "Direction · Speed" in page and "</b> drive lag." in page
 
 
 def test_groups_and_the_invisible():

@@ -15,9 +15,9 @@ from sher3_diagnosis.fit.tolerance import NUISANCE
 from sher3_diagnosis.fit.whitened import Whitened
 from sher3_diagnosis.thresholds import EATEN
 from sher3_diagnosis.words import quantity
+from sher3_effects.table_view import Still
 
 from sher3_static.readings import Labels
-from sher3_static.view import Still
 
 PARTS = 4
 """Parts that are held out in turn where each part of the table would be a whole run: its zero is then not known."""

@@ -10,9 +10,10 @@ FILES = sorted(Path(sher3_static.__file__).parent.rglob("*.py"))
 
 
 def test_no_file_imports_a_page():
+    """Pages lie in the folders of their families; what stands above them is shared."""
     for path in FILES:
         found = [n.module for n in ast.walk(ast.parse(path.read_text())) if isinstance(n, ast.ImportFrom)]
-        assert not [m for m in found if m and m.startswith("sher3_effects.")], path
+        assert not [m for m in found if m and m.startswith("sher3_effects.") and m.count(".") > 1], path
 
 
 def test_no_file_names_an_effect():

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from typing import NamedTuple
 
 from sher3_diagnosis.attribute.rivals import Attribution
 from sher3_diagnosis.effect import Effect
@@ -12,7 +11,6 @@ from sher3_diagnosis.localise.pattern import Pattern, pattern_of
 from sher3_diagnosis.machine import Diagnosis
 from sher3_diagnosis.report.odds import significant
 from sher3_diagnosis.report.summary import told
-from sher3_diagnosis.reporter import Isolability
 from sher3_diagnosis.verdict import Cause, Parameter
 from sher3_diagnosis.words import listed, place, quantity, range_text, share, words
 
@@ -20,8 +18,7 @@ NO_LOSS = 1e-9
 """Explained loss below which a share of it means nothing."""
 
 
-@dataclass(frozen=True)
-class RivalRow:
+class RivalRow(NamedTuple):
     """One effect in place of the cause.
 
     Attributes:
@@ -38,66 +35,41 @@ class RivalRow:
     separator: str
 
 
-@dataclass(frozen=True)
-class CauseCard:
-    """Everything the report says of one cause.
+class CauseCard(NamedTuple):
+    """What the report says of a cause beside the verdict.
 
     Attributes:
-        title: effect and place.
-        family, stage: in words.
+        cause: of the verdict.
         explanation: plain language: what the effect is and how it shows.
-        closure, interval: of this cause alone, in words.
         parameters: (name, value, interval) each.
         rivals: effects that come closest in its place, best first; None where none was tried.
-        alike: effects that show in the same equations.
         pattern: whether the gap lives where the cause says it does; empty when no regimes can tell.
     """
 
-    title: str
-    family: str
-    stage: str
+    cause: Cause
     explanation: str
-    closure: str
-    interval: str
     parameters: list[tuple[str, str, str]]
     rivals: list[RivalRow] | None
-    alike: list[str]
     pattern: str
 
 
-def cause_cards(diagnosis: Diagnosis, isolability: Isolability | None) -> list[CauseCard]:
+def cause_cards(diagnosis: Diagnosis) -> list[CauseCard]:
     """Return one card per cause of the verdict."""
     library = {e.id: e for e in diagnosis.machine.library()}
-    return [_card(c, diagnosis, library, isolability) for c in diagnosis.verdict.causes]
+    return [_card(c, diagnosis, library.get(c.effect)) for c in diagnosis.verdict.causes]
 
 
-def _card(
-    cause: Cause, diagnosis: Diagnosis, library: Mapping[str, Effect], isolability: Isolability | None
-) -> CauseCard:
+def _card(cause: Cause, diagnosis: Diagnosis, effect: Effect | None) -> CauseCard:
     fitted = _term_of(cause, diagnosis)
-    effect = library.get(cause.effect)
-    rivals: list[RivalRow] | None = None
-    pattern = ""
+    rivals, pattern = None, ""
     if fitted is not None:
         finding, index = fitted
         effect = finding.attribution.fit.terms[index].effect
-        if finding.attribution.ranking:
-            rivals = _rivals(cause, finding.attribution, index)
+        rivals = _rivals(cause, finding.attribution, index) if finding.attribution.ranking else None
         pattern = pattern_text(pattern_of(finding.evidence, finding.attribution.fit, index))
-    alike = frozenset() if isolability is None else isolability.alike(cause.effect)
-    low, high = cause.closure.low, cause.closure.high
-    return CauseCard(
-        title=f"{words(cause.effect)} on {place(cause.actuator)}",
-        family=words(cause.family),
-        stage=words(cause.stage),
-        explanation="" if effect is None else effect.explanation,
-        closure=share(cause.closure.value),
-        interval="interval: too few runs" if low is None else f"95 %: {share(low)} … {share(high)}",
-        parameters=_parameters(cause, frozenset() if effect is None else effect.discrete),
-        rivals=rivals,
-        alike=sorted(words(e) for e in alike),
-        pattern=pattern,
-    )
+    if effect is None:
+        return CauseCard(cause, "", _parameters(cause, frozenset()), rivals, pattern)
+    return CauseCard(cause, effect.explanation, _parameters(cause, effect.discrete), rivals, pattern)
 
 
 def _parameters(cause: Cause, choices: frozenset[str]) -> list[tuple[str, str, str]]:

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from sher3_diagnosis.verdict import Answer, Cause, Parameter, Place, Unexplained, Verdict
-from sher3_diagnosis.words import listed, lower, place, quantity, range_text, ratio_text, share, words
+from sher3_diagnosis.words import listed, lower, place, quantity, range_text, share, words
 
 SURE = 0.95
 """Probability from which the headline does not speak of odds. A convention of the words, as the next two."""
@@ -16,26 +14,6 @@ MOST = 3
 SHARES = ("relative", "fraction")
 """Parameters without a unit that are shares of what the model has."""
 LACKS = "something {0}that the library lacks"
-
-
-@dataclass(frozen=True)
-class BetRow:
-    """One answer to a place in words; `parameters` of its causes with their intervals."""
-
-    answer: str
-    probability: str
-    closure: str
-    left: str
-    parameters: str
-
-
-@dataclass(frozen=True)
-class PlaceOfBets:
-    """A place with its answers; `other` is the probability of what is not listed, empty where it is nothing."""
-
-    title: str
-    rows: list[BetRow]
-    other: str
 
 
 def odds(verdict: Verdict) -> str:
@@ -53,19 +31,6 @@ def odds(verdict: Verdict) -> str:
     told = _names(first.bet)
     beside = [sized(c) for c in verdict.causes if (c.effect, c.actuator) not in told]
     return text + (f"; besides {listed(beside)}" if beside else "")
-
-
-def places_of_bets(verdict: Verdict) -> list[PlaceOfBets]:
-    """Return the places of a verdict with what one would bet on each."""
-    return [
-        PlaceOfBets(
-            f"{words(p.stage)}, {place(p.actuator)}: "
-            f"{ratio_text(p.gap / p.floor) + ' floors' if p.floor else quantity(p.gap, p.unit)}",
-            [_row(a) for a in p.answers],
-            share(p.other) if p.other > 0.0 else "",
-        )
-        for p in verdict.places
-    ]
 
 
 def name_of(cause: Cause) -> str:
@@ -124,20 +89,17 @@ def _said(answer: Answer, first: Place, rank: int) -> str:
     return f"{listed([sized(c) for c in answer.causes])}, {likely}{closes}"
 
 
-def _row(answer: Answer) -> BetRow:
+def answered(answer: Answer) -> str:
+    """Return what an answer to a place says: its causes, or that there are none."""
     names = {"no_gap": "No gap", "outside_library": "Something that the library lacks"}
-    told = [
+    return words(listed([name_of(c) for c in answer.causes], MOST)) if answer.causes else names[answer.answer or ""]
+
+
+def sizes(answer: Answer) -> str:
+    """Return the parameters of an answer's causes with their intervals, those whose size is told."""
+    return ", ".join(
         f"{n.replace('_', ' ')} {p.means or quantity(p.value, p.unit)} ({range_text(p.low, p.high, p.unit)})"
         for c in answer.causes
         for n, p in c.parameters.items()
         if significant(p)
-    ]
-    left = answer.residual
-    name = words(listed([name_of(c) for c in answer.causes], MOST)) if answer.causes else names[answer.answer or ""]
-    return BetRow(
-        answer=name,
-        probability=share(answer.probability),
-        closure="" if answer.closure is None else share(answer.closure.value),
-        left="" if left is None else quantity(left.gap, left.unit),
-        parameters=", ".join(told),
     )

@@ -9,16 +9,13 @@ from sher3_diagnosis.discover.formula import Discovery
 from sher3_diagnosis.machine import Diagnosis
 from sher3_diagnosis.report.causes import cause_cards
 from sher3_diagnosis.report.chain import chain
-from sher3_diagnosis.report.closures import closure_bars
 from sher3_diagnosis.report.drawing import STYLE
-from sher3_diagnosis.report.experiment_card import experiment_card
 from sher3_diagnosis.report.found import closures, found_rows
-from sher3_diagnosis.report.odds import places_of_bets
+from sher3_diagnosis.report.odds import answered, sizes
 from sher3_diagnosis.report.regimes import regimes
 from sher3_diagnosis.report.summary import command, five_lines, headline
 from sher3_diagnosis.report.traces import traces
-from sher3_diagnosis.reporter import Isolability
-from sher3_diagnosis.words import place, words
+from sher3_diagnosis.words import place, quantity, ratio_text, share, words
 
 TEMPLATE = "template.html"
 
@@ -47,18 +44,29 @@ def render(
     """
     loader = jinja2.PackageLoader("sher3_diagnosis", "report")
     environment = jinja2.Environment(loader=loader, autoescape=True, trim_blocks=True, lstrip_blocks=True)
+    environment.globals |= {f.__name__: f for f in SAID}
+    environment.filters["words"] = words
     with rc_context(STYLE):
         return environment.get_template(TEMPLATE).render(
             found=_formula(found), **_sections(diagnosis, title, folder, case or title, in_memory)
         )
 
 
+def percent(part: float | None) -> str:
+    """Return a share as the length of a bar, percent; none below zero."""
+    return f"{100.0 * max(part or 0.0, 0.0):.1f}"
+
+
+SAID = (words, place, quantity, share, ratio_text, answered, sizes, percent)
+"""How the template says what it finds in a verdict."""
+
+
 def _sections(diagnosis: Diagnosis, title: str, folder: str, case: str, in_memory: bool) -> dict[str, object]:
     verdict, reporter = diagnosis.verdict, diagnosis.machine.reporter()
     parts = [f.evidence for f in diagnosis.findings]
-    isolability = reporter.isolability(parts)
     rests = {e.id: e.leaves_out for e in diagnosis.machine.library() if e.leaves_out}
-    lines = five_lines(verdict, reporter, rests, reporter.table(diagnosis), case, folder)
+    table = reporter.table(diagnosis)
+    lines = five_lines(verdict, reporter, rests, table, case, folder)
     going = command(verdict, reporter, case, folder)
     if in_memory and going is not None:
         going = CORRECTED if verdict.causes else None
@@ -66,25 +74,18 @@ def _sections(diagnosis: Diagnosis, title: str, folder: str, case: str, in_memor
     return dict(
         title=title,
         verdict=verdict,
+        reporter=reporter,
         headline=headline(verdict, rests),
         lines=lines,
         picture=reporter.picture(diagnosis),
         command=going,
         data=reporter.data(parts),
-        held_out=reporter.held_out,
-        simulated=reporter.simulated,
         chain=chain(diagnosis, reporter),
         traces=traces(diagnosis, reporter),
-        bets=places_of_bets(verdict),
-        with_bet=any(p.bet is not None for p in verdict.places),
-        closures=closure_bars(verdict, reporter.end),
-        table=reporter.table(diagnosis),
-        causes=cause_cards(diagnosis, isolability),
+        table=table,
+        causes=cause_cards(diagnosis),
         regimes=regimes(diagnosis),
-        isolability=None if isolability is None else _in_words(isolability),
-        experiment=experiment_card(verdict, reporter),
-        words=words,
-        place=place,
+        isolability=reporter.isolability(parts),
     )
 
 
@@ -95,12 +96,3 @@ def _formula(found: Discovery | None) -> dict[str, object] | None:
     where = "" if not found.channels else f"{words(found.channel.stage)}, {place(found.channel.actuator)}"
     rows = found_rows(found) if found.claimed else []
     return {"where": where, "rows": rows, "closes": closures(found) if rows else "", "note": found.note}
-
-
-def _in_words(found: Isolability) -> dict[str, list]:
-    """Return the groups, the invisible effects and the sources, by name."""
-    return {
-        "groups": [sorted(words(e) for e in group) for group in found.groups],
-        "invisible": sorted(words(e) for e in found.invisible),
-        "sources": sorted(found.sources),
-    }

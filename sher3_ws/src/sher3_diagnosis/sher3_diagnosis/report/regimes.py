@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
+from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.localise.regimes import regime_powers
 from sher3_diagnosis.machine import Diagnosis
-from sher3_diagnosis.words import place, words
 
 SHOWN = 4
 """Channels shown, those with the largest gap."""
@@ -18,22 +18,13 @@ SHORTEST = 1.5
 """Rms over floor that a full bar stands for at least, so that regimes at the floor do not look large."""
 
 
-@dataclass(frozen=True)
-class Row:
-    """One regime: its rms over the floor, and the length of its bar in percent."""
+class Regimes(NamedTuple):
+    """Rms over floor of a channel by regime, largest first; what a full bar stands for, and where a gap begins."""
 
-    name: str
-    ratio: float
-    width: float
-    gap: bool
-
-
-@dataclass(frozen=True)
-class Regimes:
-    """The regimes of one channel, largest first."""
-
-    title: str
-    rows: list[Row]
+    at: Channel
+    ratios: list[tuple[str, float]]
+    full: float
+    gap_from: float = ABOVE_FLOOR
 
 
 def regimes(diagnosis: Diagnosis) -> list[Regimes]:
@@ -43,7 +34,5 @@ def regimes(diagnosis: Diagnosis) -> list[Regimes]:
     for gap, evidence in sorted(gaps, key=lambda pair: -pair[0].power)[:SHOWN]:
         powers = regime_powers(evidence, gap.channel)
         ratios = sorted(((n, p**0.5) for n, p in powers.items()), key=lambda x: -x[1])[:ROWS]
-        top = max((r for _, r in ratios), default=1.0)
-        rows = [Row(n, r, 100.0 * r / max(top, SHORTEST), r > ABOVE_FLOOR) for n, r in ratios]
-        out.append(Regimes(f"{words(gap.channel.stage)}, {place(gap.channel.actuator)}", rows))
+        out.append(Regimes(gap.channel, ratios, max((SHORTEST, *(r for _, r in ratios)))))
     return out

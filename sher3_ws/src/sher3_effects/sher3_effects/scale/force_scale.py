@@ -12,8 +12,8 @@ from sher3_diagnosis.effect import Best, Shape, Signature, column
 from sher3_sim.effect import PlantEffect, parameter
 from sher3_sim.parameters import PlantParameters
 
-from sher3_effects.cell_view import CellView
 from sher3_effects.page import Page, Tolerated
+from sher3_effects.table_view import CellView
 from sher3_effects.view import AxisView
 
 COMPONENTS = ("fx", "fy", "fz", "tx", "ty", "tz")

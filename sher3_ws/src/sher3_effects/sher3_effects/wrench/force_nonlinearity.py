@@ -8,8 +8,8 @@ import numpy as np
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.effect import Best, Shape, Signature, column
 
-from sher3_effects.cell_view import CellView
 from sher3_effects.page import Page
+from sher3_effects.table_view import CellView
 
 
 class ForceNonlinearity(Page):

@@ -12,8 +12,9 @@ from sher3_diagnosis.reporter import FLOWS, Isolability, Output, Reporter, Trace
 from sher3_gap.evidence import SherEvidence
 from sher3_gap.excitation import catalogue
 from sher3_gap.report.drawing import robot_drawing
-from sher3_gap.report.topics import data_text, exact_stages, isolability_of
+from sher3_gap.report.topics import data_text, exact_stages, recorded_topics
 from sher3_gap.stages.exact.timing import demand_in_force
+from sher3_gap.stages.isolability import structure
 from sher3_gap.stages.residuals import mean_force
 
 AT_TIP = "tip − nominal tip"
@@ -45,7 +46,7 @@ class SherReporter(Reporter[SherEvidence]):
 
     def isolability(self, parts: Sequence[SherEvidence]) -> Isolability:
         """Return which effects the recorded topics can tell apart."""
-        return isolability_of(parts[0].runs)
+        return structure(recorded_topics(parts[0].runs))
 
     def run_name(self, evidence: SherEvidence, run: int) -> str:
         """Return name, excitation and repeat."""

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from sher3_diagnosis.reporter import Isolability, counted
+from sher3_diagnosis.reporter import counted
 
 from sher3_gap.signals import RunSignals
-from sher3_gap.stages.isolability import structure
 
 TOPIC_OF = {
     "motor": "drives/measured_js",
@@ -26,13 +25,6 @@ EXACT_NEEDS = {"controller": ("command", "reference", "load"), "transport": ("co
 def recorded_topics(runs: Sequence[RunSignals]) -> set[str]:
     """Return the topics that at least one run has."""
     return {topic for name, topic in TOPIC_OF.items() if any(getattr(run, name) is not None for run in runs)}
-
-
-def isolability_of(runs: Sequence[RunSignals]) -> Isolability:
-    """Return which effects the topics of these runs can tell apart."""
-    topics = recorded_topics(runs)
-    found = structure(topics)
-    return Isolability(sorted(topics), found.groups, found.invisible)
 
 
 def exact_stages(runs: Sequence[RunSignals]) -> dict[str, bool]:

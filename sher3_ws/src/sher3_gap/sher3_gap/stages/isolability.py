@@ -8,11 +8,11 @@ position, load, time) can tell them apart, never the place where they show.
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable
-from dataclasses import dataclass
 from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
+from sher3_diagnosis.reporter import Isolability
 from sher3_effects import library
 
 from sher3_gap.stages.overdetermined import Mask, not_isolable, overdetermined
@@ -27,21 +27,6 @@ class Equation(NamedTuple):
     unknowns: tuple[str, ...]
     effects: tuple[str, ...] = ()
     topic: str = ""
-
-
-@dataclass(frozen=True)
-class Structure:
-    """Result of the analysis.
-
-    Attributes:
-        groups: effect ids that the structure cannot tell apart, largest group first; groups of one are told apart.
-        invisible: effects that no combination of the recorded topics shows.
-        topics: the topics the analysis used.
-    """
-
-    groups: tuple[frozenset[str], ...]
-    invisible: frozenset[str]
-    topics: frozenset[str]
 
 
 def _breaking(*relations: str) -> tuple[str, ...]:
@@ -81,7 +66,7 @@ def _incidence(equations: Iterable[Equation], columns: list[str], field: str) ->
 
 
 @lru_cache(maxsize=64)
-def _analyse(topics: frozenset[str]) -> Structure:
+def _analyse(topics: frozenset[str]) -> Isolability:
     equations = [e for e in _chain() if not e.topic or e.topic in topics]
     unknowns = sorted({u for e in equations for u in e.unknowns})
     effects = sorted({f for e in equations for f in e.effects})
@@ -92,10 +77,10 @@ def _analyse(topics: frozenset[str]) -> Structure:
     groups = {frozenset(effects[j] for j in np.flatnonzero(alike[i] & visible)) for i in np.flatnonzero(visible)}
     hidden = frozenset(e for e, seen in zip(effects, visible, strict=True) if not seen)
     ordered = tuple(sorted(groups, key=lambda g: (-len(g), sorted(g))))
-    return Structure(ordered, hidden, topics)
+    return Isolability(tuple(sorted(topics - {PAYLOAD})), ordered, hidden)
 
 
-def structure(topics: Collection[str], known_load: bool = True) -> Structure:
+def structure(topics: Collection[str], known_load: bool = True) -> Isolability:
     """Analyse which effects the recorded topics can tell apart.
 
     Args:

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 from sher3_diagnosis.channel import Array
+from sher3_effects.table_view import Still
 
 from sher3_static.arm.kinematics import Arm, Postures
 from sher3_static.arm.sight import Sight
-from sher3_static.view import Still
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.finding import Finding
+from sher3_effects.table_view import CellView
 from sher3_machines.intake.kind import Draft
 from sher3_machines.intake.tables import Tables
 from sher3_machines.thresholds import BLOCKS
@@ -15,7 +16,6 @@ from sher3_machines.thresholds import BLOCKS
 from sher3_static.cell.description import CellDescription
 from sher3_static.cell.draft import draft_cell
 from sher3_static.cell.reading import read_cell, scatter, unloading
-from sher3_static.cell.view import ForcesView
 from sher3_static.kind import TableKind
 from sher3_static.readings import Readings, joined, warmed
 from sher3_static.reporter import Words
@@ -52,7 +52,7 @@ class CellKind(TableKind[CellDescription]):
         """Return all readings as one table; every eighth is held out in turn."""
         rows = joined(runs)
         side = np.concatenate([unloading(run["applied"]) for run in runs])
-        view = ForcesView(warmed(runs), rows["applied"], side)
+        view = CellView(warmed(runs), rows["applied"], side)
         least = RESOLVED * float(np.ptp(rows["applied"]))
         floor = known.noise or max(scatter(view, rows["reading"], rows["run"]), least)
         table = Table(

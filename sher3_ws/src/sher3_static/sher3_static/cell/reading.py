@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 from sher3_diagnosis.channel import Array
+from sher3_effects.table_view import CellView
 from sher3_machines.errors import MachineError
 from sher3_machines.intake.columns import pick, pick_beside
 from sher3_machines.intake.tables import Tables
 
 from sher3_static.cell.description import CellDescription
-from sher3_static.cell.view import ForcesView
 from sher3_static.readings import (
     Labels,
     Readings,
@@ -81,7 +81,7 @@ def unloading(applied: Array) -> Array:
     return out
 
 
-def scatter(view: ForcesView, reading: Array, run: Labels) -> float:
+def scatter(view: CellView, reading: Array, run: Labels) -> float:
     """Return the standard deviation of a reading beyond a zero that wanders and is another one in each run.
 
     What differs at one force reached from one side, where forces were repeated; else what no curve of third order in

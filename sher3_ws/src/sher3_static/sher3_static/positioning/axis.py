@@ -8,11 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 from sher3_diagnosis.channel import Array, Channel
 from sher3_effects import pages
+from sher3_effects.table_view import TableView
 from sher3_machines.errors import MachineError
 
 from sher3_static.positioning.description import AxisTest
 from sher3_static.positioning.iso import Positioning, positioning
-from sher3_static.positioning.view import RowsView
 from sher3_static.readings import Labels, Readings, joined, one_hot, same, scatter_beyond
 from sher3_static.table import PARTS, Table
 
@@ -49,7 +49,7 @@ def axis_table(test: AxisTest, runs: Sequence[Readings]) -> Table:
     rows = joined(counted_on(runs))
     target = rows["target"] - 0.5 * (rows["target"].max() + rows["target"].min())
     warm = rows["temperature"] - test.reference_temperature if "temperature" in rows else np.zeros(len(target))
-    view = RowsView(warm, target, rows["direction"], test.lead)
+    view = TableView(warm, target, rows["direction"], test.lead)
     unit, millionth = UNITS[test.motion]
     return Table(
         name=test.name,

@@ -9,11 +9,11 @@ import numpy as np
 from sher3_diagnosis.channel import Array, Channel, Mask
 from sher3_diagnosis.localise.floors import noise_of_bends
 from sher3_effects import pages
+from sher3_effects.table_view import CircleView
 
 from sher3_static.positioning.axis import RESOLVED
 from sher3_static.positioning.description import CircleTest
 from sher3_static.positioning.iso import Circular, circular
-from sher3_static.positioning.view import RingView
 from sher3_static.readings import Readings, joined
 from sher3_static.table import PARTS, Table
 
@@ -31,7 +31,7 @@ class CircleFigures:
     """
 
     radius: Array
-    view: RingView
+    view: CircleView
     unit, standard = "um", "ISO 230-4"
 
     def without(self, part: Array) -> Circular:
@@ -49,7 +49,7 @@ def circle_table(test: CircleTest, runs: Sequence[Readings]) -> Table:
     """Return the table of one plane: the radius of each run about its own centre, which is free, as its length is."""
     rows = joined([centred(run) for run in runs])
     angle, turning = rows["angle"], rows["turning"]
-    view = RingView(np.zeros(len(angle)), angle, turning, test.radius)
+    view = CircleView(np.zeros(len(angle)), angle, turning, test.radius)
     quadrant = (np.floor((angle + np.pi) / (2.0 * np.pi) * 3.0 * PARTS) % PARTS).astype(int)
     set_up = np.stack([np.ones(view.rows), np.cos(angle), np.sin(angle)], axis=-1)[:, None, :]
     return Table(

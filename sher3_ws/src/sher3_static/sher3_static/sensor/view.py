@@ -10,9 +10,9 @@ from types import SimpleNamespace
 import numpy as np
 from scipy.spatial.transform import Rotation
 from sher3_diagnosis.channel import Array
+from sher3_effects.table_view import Still
 
 from sher3_static.sensor.frames import Frame, frames, turned
-from sher3_static.view import Still
 
 
 @dataclass(frozen=True, eq=False)
