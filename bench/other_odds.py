@@ -214,7 +214,7 @@ def sensor(seed: int) -> Case:
 
 def positioning(seed: int) -> Case:
     """Return a positioning test with one or two errors, with a knock in the middle, or with none."""
-    import test_machine as p  # of positioning
+    import test_positioning as p
 
     rng, wrong = np.random.default_rng(seed), seed % 5
     sizes = {"scale": 20e-6, "reversal": 6e-6, "growth": 8e-6, "drift": 5e-6, "bump": 5e-6}

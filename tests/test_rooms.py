@@ -52,6 +52,12 @@ def test_packages_import_only_what_the_table_allows(package):
         assert used <= allowed()[package] | doors, f"{path.relative_to(ROOT)} imports {sorted(used)}"
 
 
+def test_no_two_test_modules_share_a_name():
+    """A failure is named by its module alone, and what one imports of another is found on one path of all."""
+    named = Counter(path.name for folder in ("sher3_ws", "tests") for path in (ROOT / folder).rglob("test_*.py"))
+    assert not [name for name, count in named.items() if count > 1]
+
+
 def is_door(path: Path) -> bool:
     return fnmatch(path.name, "*_node.py") or fnmatch(path.name, "cli.py")
 

@@ -194,7 +194,7 @@ HAZARDS = (
         "a second process, program or host that publishes what moves the robot",
         "loopback alone; one publisher of each stream and command; no other host on CAN; policy file of the middleware",
         (),
-        ("tests/test_security.py", "tests/test_privacy.py", "sher3_ws/src/sher3_control/test/test_nodes.py"),
+        ("tests/test_security.py", "tests/test_privacy.py", "sher3_ws/src/sher3_control/test/test_control_nodes.py"),
         (),
         "whoever runs programs on the robot's computer as its user may do anything",
     ),
