@@ -15,9 +15,12 @@ from sher3_effects.page import CONSTANTS
 from sher3_machines.errors import MachineError
 
 from sher3_export.changes import Change
+from sher3_export.targets.target import Row
 
 INERTIAL = tuple(name for name in CONSTANTS if name.startswith("link_"))
 """Constants of a link, in the order of its inertial parameters."""
+WANTED = Row("inertial", lambda to, change, link: to.links.want(change))
+"""How a target that has `links` takes each of them."""
 MOVED = 1e-6
 """Share of the mean mass, with lengths in metres, by which a body must change to be written anew."""
 NAMES = ("ixx", "ixy", "iyy", "ixz", "iyz", "izz")

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import ClassVar
 from xml.etree.ElementTree import Element, SubElement
 
 from sher3_export.changes import Change
 from sher3_export.targets import mjcf_motor
-from sher3_export.targets.links import INERTIAL, WrongLinks
+from sher3_export.targets.links import INERTIAL, WANTED, WrongLinks
 from sher3_export.targets.mjcf_body import (
     body_around,
     class_value,
@@ -25,7 +25,7 @@ from sher3_export.targets.mjcf_body import (
 )
 from sher3_export.targets.mjcf_ranges import write_range
 from sher3_export.targets.mjcf_tendon import at_motor
-from sher3_export.targets.target import NOT_TOLD, XmlTarget, each, field
+from sher3_export.targets.target import NOT_TOLD, Row, XmlTarget, field
 from sher3_export.xml_file import elements, number, numbers, parents, written
 
 STEP = 0.002
@@ -55,32 +55,6 @@ class Mjcf(XmlTarget):
     """A MuJoCo model; attributes that come from <default> classes are read there and written at the joint."""
 
     name, root_tag, suffix = "mjcf", "mujoco", "xml"
-    fields: ClassVar[Mapping[str, str]] = {
-        "coulomb": "frictionloss",
-        **dict.fromkeys(("static", "stribeck"), "dcmotor without input, lugre"),
-        "viscous": "damping",
-        "inertia": "armature",
-        "offset": "actuator without control",
-        "weight": "gravcomp, for the last joint",
-        "drive": "gear, or kp and kv",
-        "delay": "delay, nsample",
-        "servo": "kp and kv",
-        "servo_position": "kp",
-        "servo_velocity": "kv",
-        "servo_delay": "delay, nsample",
-        "lag": "filterexact, timeconst",
-        "limit": "forcerange",
-        "zero": "ref",
-        **dict.fromkeys(mjcf_motor.COGGING, "dcmotor without input, cogging"),
-        **dict.fromkeys(("backlash", "compliance"), "a body of the motor's own and a second joint"),
-        "spring": "stiffness",
-        "rest": "springref",
-        "link": "inertial, or mass or density of the geoms",
-        **dict.fromkeys(INERTIAL, "inertial"),
-        **each(
-            {"payload payload_x payload_y payload_z": "a body of its own", "shift_x shift_y shift_z": "pos of the body"}
-        ),
-    }
     refuses: ClassVar[Mapping[str, str]] = NOT_TOLD
     apply_at_motor = at_motor
 
@@ -105,39 +79,6 @@ class Mjcf(XmlTarget):
     def all_joints(self) -> Sequence[Element]:
         """Return hinges and slides of the bodies."""
         return [x for body in elements(self.root, "body") for x in inside(body, "joint")]
-
-    @property
-    def writers(self) -> Mapping[str, Callable[[Change, Element], str]]:
-        """Return what writes each constant."""
-        cogging = dict.fromkeys(mjcf_motor.COGGING, lambda change, joint: mjcf_motor.cogging(self.root, change))
-        return {
-            **cogging,
-            "coulomb": self._coulomb,
-            "static": self._static,
-            "stribeck": lambda change, joint: mjcf_motor.falling(self.root, change),
-            "viscous": lambda change, joint: self._add(joint, "damping", change.value),
-            "inertia": lambda change, joint: self._add(joint, "armature", change.value),
-            "offset": self._offset,
-            "weight": self._weight,
-            "drive": self._drive,
-            "delay": lambda change, joint: self._delay(change, self._actuators(change.joint)),
-            "servo": lambda change, joint: self._gains(change, ("kp", "kv")),
-            "servo_position": lambda change, joint: self._gains(change, ("kp",)),
-            "servo_velocity": lambda change, joint: self._gains(change, ("kv",)),
-            "servo_delay": lambda change, joint: self._delay(change, self._servos(change.joint)),
-            "lag": self._lag,
-            "limit": self._limit,
-            "zero": self._zero,
-            "backlash": self._backlash,
-            "compliance": self._compliance,
-            "spring": lambda change, joint: self._add(joint, "stiffness", change.value),
-            "rest": self._rest,
-            "link": self._link,
-            **dict.fromkeys(INERTIAL, lambda change, body: self.links.want(change)),
-            "payload": self._payload,
-            **dict.fromkeys(("payload_x", "payload_y", "payload_z"), self._centre),
-            **dict.fromkeys(("shift_x", "shift_y", "shift_z"), self._shift),
-        }
 
     def nominal(self) -> dict[str, dict[str, float]]:
         """Return what joints have, classes of <default> included, and the gains of their servos."""
@@ -396,3 +337,35 @@ class Mjcf(XmlTarget):
 
     def _class_value(self, element: Element, attribute: str) -> str | None:
         return class_value(self.root, element, attribute)
+
+    rows: ClassVar[Mapping[str, Row]] = {
+        "coulomb": Row("frictionloss", _coulomb),
+        "static": Row("dcmotor without input, lugre", _static),
+        "stribeck": Row("dcmotor without input, lugre", lambda to, change, _: mjcf_motor.falling(to.root, change)),
+        "viscous": Row("damping", lambda to, change, joint: to._add(joint, "damping", change.value)),
+        "inertia": Row("armature", lambda to, change, joint: to._add(joint, "armature", change.value)),
+        "offset": Row("actuator without control", _offset),
+        "weight": Row("gravcomp, for the last joint", _weight),
+        "drive": Row("gear, or kp and kv", _drive),
+        "delay": Row("delay, nsample", lambda to, change, _: to._delay(change, to._actuators(change.joint))),
+        "servo": Row("kp and kv", lambda to, change, _: to._gains(change, ("kp", "kv"))),
+        "servo_position": Row("kp", lambda to, change, _: to._gains(change, ("kp",))),
+        "servo_velocity": Row("kv", lambda to, change, _: to._gains(change, ("kv",))),
+        "servo_delay": Row("delay, nsample", lambda to, change, _: to._delay(change, to._servos(change.joint))),
+        "lag": Row("filterexact, timeconst", _lag),
+        "limit": Row("forcerange", _limit),
+        "zero": Row("ref", _zero),
+        **dict.fromkeys(
+            mjcf_motor.COGGING,
+            Row("dcmotor without input, cogging", lambda to, change, _: mjcf_motor.cogging(to.root, change)),
+        ),
+        "backlash": Row("a body of the motor's own and a second joint", _backlash),
+        "compliance": Row("a body of the motor's own and a second joint", _compliance),
+        "spring": Row("stiffness", lambda to, change, joint: to._add(joint, "stiffness", change.value)),
+        "rest": Row("springref", _rest),
+        "link": Row("inertial, or mass or density of the geoms", _link),
+        **dict.fromkeys(INERTIAL, WANTED),
+        "payload": Row("a body of its own", _payload),
+        **dict.fromkeys(("payload_x", "payload_y", "payload_z"), Row("a body of its own", _centre)),
+        **dict.fromkeys(("shift_x", "shift_y", "shift_z"), Row("pos of the body", _shift)),
+    }

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import ClassVar
 from xml.etree.ElementTree import Element
 
 from sher3_export.changes import Change
 from sher3_export.targets.links import INERTIAL
-from sher3_export.targets.target import NOT_TOLD, XmlTarget, each
+from sher3_export.targets.target import NOT_TOLD, Row, XmlTarget, each
 from sher3_export.targets.urdf import PAYLOAD, child
 from sher3_export.xml_file import number, written
 
@@ -18,13 +18,6 @@ class Sdf(XmlTarget):
 
     name, root_tag = "sdf", "sdf"
     suffix = "sdf"
-    fields: ClassVar[Mapping[str, str]] = {
-        "coulomb": "friction",
-        "viscous": "damping",
-        "limit": "effort",
-        "spring": "spring_stiffness",
-        "rest": "spring_reference",
-    }
     refuses: ClassVar[Mapping[str, str]] = {
         **NOT_TOLD,
         **each(
@@ -52,17 +45,6 @@ class Sdf(XmlTarget):
         """Return the joints that move."""
         return [x for x in self.root.iter("joint") if x.get("type") != "fixed" and x.find("axis") is not None]
 
-    @property
-    def writers(self) -> Mapping[str, Callable[[Change, Element], str]]:
-        """Return what writes each constant."""
-        return {
-            "coulomb": lambda change, joint: self._add(joint, "dynamics", "friction", change.value),
-            "viscous": lambda change, joint: self._add(joint, "dynamics", "damping", change.value),
-            "spring": lambda change, joint: self._add(joint, "dynamics", "spring_stiffness", change.value),
-            "rest": self._rest,
-            "limit": self._limit,
-        }
-
     def nominal(self) -> dict[str, dict[str, float]]:
         """Return friction and damping of joints; an SDF knows no rotor."""
         return {
@@ -83,3 +65,13 @@ class Sdf(XmlTarget):
     def _limit(self, change: Change, joint: Element) -> str:
         child(child(child(joint, "axis"), "limit"), "effort").text = written(change.value)
         return ""
+
+    rows: ClassVar[Mapping[str, Row]] = {
+        "coulomb": Row("friction", lambda to, change, joint: to._add(joint, "dynamics", "friction", change.value)),
+        "viscous": Row("damping", lambda to, change, joint: to._add(joint, "dynamics", "damping", change.value)),
+        "limit": Row("effort", _limit),
+        "spring": Row(
+            "spring_stiffness", lambda to, change, joint: to._add(joint, "dynamics", "spring_stiffness", change.value)
+        ),
+        "rest": Row("spring_reference", _rest),
+    }

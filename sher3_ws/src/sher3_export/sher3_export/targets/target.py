@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
-from typing import ClassVar
+from typing import Any, ClassVar, NamedTuple
 from xml.etree.ElementTree import Element
 
 from sher3_export.changes import Change
@@ -60,17 +60,35 @@ class Target(ABC):
         """Return the model with remarks as a comment on top."""
 
 
+class Row(NamedTuple):
+    """Where a constant stands in a model, and what writes it there.
+
+    Attributes:
+        field: as the documentation shows it.
+        write: of the target, a change and the element it is written at; returns why it cannot be, or nothing.
+    """
+
+    field: str
+    write: Callable[[Any, Change, Element], str]
+
+
 class XmlTarget(Target):
     """A model in XML.
 
     Class attributes:
         root_tag: name of its root element.
+        rows: constant -> its field and what writes it; `fields` are those.
 
     Attributes:
         root: of the model, changed in place.
     """
 
     root_tag: ClassVar[str]
+    rows: ClassVar[Mapping[str, Row]]
+
+    def __init_subclass__(cls) -> None:
+        super().__init_subclass__()
+        cls.fields = {constant: row.field for constant, row in cls.rows.items()}
 
     def __init__(self, root: Element) -> None:
         self.root = root
@@ -83,18 +101,13 @@ class XmlTarget(Target):
     def all_joints(self) -> Sequence[Element]:
         """Return the joints of the model."""
 
-    @property
-    @abstractmethod
-    def writers(self) -> Mapping[str, Callable[[Change, Element], str]]:
-        """Return constant -> what writes it at a joint and returns why it cannot, or nothing."""
-
     @abstractmethod
     def nominal(self) -> dict[str, dict[str, float]]:
         """Return joint -> constant -> what the model says of friction, damping and rotor inertia, SI units."""
 
     def apply(self, change: Change) -> str:
         """Write a change at its joint; return why it cannot be written, or nothing."""
-        if change.constant not in self.writers:
+        if change.constant not in self.rows:
             return self.refuses.get(change.constant, f"{self.name} has no field for it")
         joint = self.place(change)
         if joint is None:
@@ -104,7 +117,7 @@ class XmlTarget(Target):
         elif change.over_stiffness:
             scaled = {"value": change.value * stiffness, "unit": "N*m" if change.unit == "rad" else "N"}
             change = Change(**{**change.__dict__, **scaled})
-        return self.writers[change.constant](change, joint)
+        return self.rows[change.constant].write(self, change, joint)
 
     def place(self, change: Change) -> Element | None:
         """Return the element that a change is written at; default the joint of its name."""

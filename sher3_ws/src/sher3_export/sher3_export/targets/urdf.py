@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import ClassVar
 from xml.etree.ElementTree import Element, SubElement
 
@@ -10,8 +10,8 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from sher3_export.changes import Change
-from sher3_export.targets.links import INERTIAL, Inertia, WrongLinks
-from sher3_export.targets.target import NOT_TOLD, XmlTarget, each, field
+from sher3_export.targets.links import INERTIAL, WANTED, Inertia, WrongLinks
+from sher3_export.targets.target import NOT_TOLD, Row, XmlTarget, each, field
 from sher3_export.xml_file import add, number, numbers, written
 
 PAYLOAD = "a payload is a link of its own: add it with a fixed joint by hand, or export to mjcf"
@@ -23,14 +23,6 @@ class Urdf(XmlTarget):
 
     name, root_tag = "urdf", "robot"
     suffix = "urdf"
-    fields: ClassVar[Mapping[str, str]] = {
-        "coulomb": "friction",
-        "viscous": "damping",
-        "limit": "effort",
-        "link": "mass and inertia",
-        **dict.fromkeys(INERTIAL, "inertial"),
-        **dict.fromkeys(("zero", "shift_x", "shift_y", "shift_z"), "origin"),
-    }
     refuses: ClassVar[Mapping[str, str]] = {
         **NOT_TOLD,
         **each(
@@ -64,21 +56,6 @@ class Urdf(XmlTarget):
     def all_joints(self) -> Sequence[Element]:
         """Return the joints that move."""
         return [x for x in self.root.findall("joint") if x.get("type") != "fixed"]
-
-    @property
-    def writers(self) -> Mapping[str, Callable[[Change, Element], str]]:
-        """Return what writes each constant."""
-        return {
-            "coulomb": lambda change, joint: self._dynamics(joint, "friction", change.value),
-            "viscous": lambda change, joint: self._dynamics(joint, "damping", change.value),
-            "limit": lambda change, joint: field(child(joint, "limit"), "effort", change.value),
-            "link": self._link,
-            **dict.fromkeys(INERTIAL, lambda change, link: self.links.want(change)),
-            "zero": self._zero,
-            "shift_x": self._shift,
-            "shift_y": self._shift,
-            "shift_z": self._shift,
-        }
 
     def place(self, change: Change) -> Element | None:
         """Return the joint of a change, or the link that is heavier."""
@@ -132,6 +109,16 @@ class Urdf(XmlTarget):
     def _move(self, origin: Element, turn: Rotation, step: np.ndarray) -> str:
         origin.set("xyz", written(*(np.array(numbers(origin.get("xyz"), "0 0 0")) + turn.apply(step))))
         return ""
+
+    rows: ClassVar[Mapping[str, Row]] = {
+        "coulomb": Row("friction", lambda to, change, joint: to._dynamics(joint, "friction", change.value)),
+        "viscous": Row("damping", lambda to, change, joint: to._dynamics(joint, "damping", change.value)),
+        "limit": Row("effort", lambda to, change, joint: field(child(joint, "limit"), "effort", change.value)),
+        "link": Row("mass and inertia", _link),
+        **dict.fromkeys(INERTIAL, WANTED),
+        "zero": Row("origin", _zero),
+        **dict.fromkeys(("shift_x", "shift_y", "shift_z"), Row("origin", _shift)),
+    }
 
 
 def set_inertial(link: Element, body: Inertia) -> None:
