@@ -5,6 +5,7 @@ from sher3_challenge.errors import ChallengeError
 from sher3_challenge.plants import registry
 from sher3_challenge.plants.grammar import CATALOGUE
 from sher3_challenge.plants.registry import plant_names, truth_plant
+from sher3_challenge.warm import warm_up
 
 REQUIRED = {"lead_error", "force_bias", "force_drift", "torque_constant", "gravity_load", "thermal_expansion"}
 """Kinds of which under-excited cases are made."""
@@ -16,6 +17,10 @@ def test_every_plant_stands_for_the_whole_catalogue_and_for_kinds_outside_it(nam
     assert plant.name == name and len(plant.effects) == 44 and set(plant.library) >= REQUIRED
     assert len(plant.outside) >= 12 and all(kind.effect == "outside_library" for kind in plant.outside.values())
     assert not set(plant.library) & set(plant.outside)
+
+
+def test_the_set_up_runs_every_plant():
+    assert set(warm_up()) == set(plant_names())
 
 
 def test_no_two_plants_share_a_kind_outside_the_catalogue():

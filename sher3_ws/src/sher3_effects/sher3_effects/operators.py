@@ -258,10 +258,11 @@ def rate_limited(x: Array, start: float, limit: float, time_constant: float, per
 def _follow(x: Array, keep: float) -> Array:
     """Return x (n, d) one sample late through y <- keep y + (1 - keep) x, at rest at first."""
     out = np.empty_like(x)
-    y = np.zeros_like(x[0])
-    for k in range(len(x)):
-        out[k] = y + x[0]
-        y = (1.0 - keep) * (x[k] - x[0]) + keep * y
+    for i in range(x.shape[1]):
+        y = 0.0
+        for k in range(len(x)):
+            out[k, i] = y + x[0, i]
+            y = (1.0 - keep) * (x[k, i] - x[0, i]) + keep * y
     return out
 
 

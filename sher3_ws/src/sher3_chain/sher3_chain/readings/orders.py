@@ -35,7 +35,10 @@ def orders_in(reading: Array, position: Array, speed: Array, count: int) -> list
     orders = turn * (LEAST + np.arange(tried) / FINE)
     plain = np.column_stack([np.ones_like(position), position, speed, np.sign(speed)])
     left = reading - plain @ np.linalg.lstsq(plain, reading, rcond=None)[0]
-    power = np.array([np.abs(np.exp(-1j * n * position) @ left) for n in orders])
+    power = np.empty(tried)
+    wave, finer = (np.exp(-1j * turn * n * position) for n in (LEAST, 1.0 / FINE))
+    for i in range(tried):  # the next wave is this one, turned by a quarter of a period over the travel
+        power[i], wave = np.abs(wave @ left), wave * finer
     inner = np.r_[-np.inf, power, -np.inf]
     peaks = np.flatnonzero((inner[1:-1] >= inner[:-2]) & (inner[1:-1] >= inner[2:]))
     return [float(orders[i]) for i in peaks[np.argsort(-power[peaks])][:count]]

@@ -30,14 +30,14 @@ class Fit:
     Attributes:
         coefficients: (p,) of all terms in order; `loro_coefficients`: (runs, p), each without its run.
         loss: per run and channel, sum of squares under the coefficients of the other runs (held out).
-        cancelled: the largest of what a term adds by itself over what all terms of its channels add together, rms.
+        parts: the fits of terms that share channels.
     """
 
     terms: tuple[Term, ...]
     coefficients: Array
     loro_coefficients: Array
     loss: dict[tuple[int, Channel], float]
-    cancelled: float
+    parts: tuple[_Part, ...]
 
     def _columns(self, index: int) -> slice:
         start = sum(t.width for t in self.terms[:index])
@@ -61,6 +61,11 @@ class Fit:
         return sum(self.loss.values())
 
     @property
+    def cancelled(self) -> float:
+        """The largest of what a term adds by itself over what all terms of its channels add together, rms."""
+        return max((part.cancelled for part in self.parts), default=0.0)
+
+    @property
     def admissible(self) -> bool:
         """Whether every term's fit is physically possible."""
         return all(t.effect.admissible(t.shape, self.of(i)) for i, t in enumerate(self.terms))
@@ -68,32 +73,43 @@ class Fit:
 
 @dataclass(frozen=True)
 class _Part:
-    """The fit of terms that share channels."""
+    """The fit of terms that share channels, with their normal matrix (p, p) of all runs."""
 
     terms: tuple[Term, ...]
     coefficients: Array
     held_out: Array
     loss: dict[tuple[int, Channel], float]
-    cancelled: float
+    normal: Array
+
+    @cached_property
+    def cancelled(self) -> float:
+        """The largest of what a term adds by itself over what all of them add, rms."""
+        x, ends = self.coefficients, pairwise([0, *accumulate(t.width for t in self.terms)])
+        own = max(float(x[a:b] @ self.normal[a:b, a:b] @ x[a:b]) for a, b in ends)
+        return float(np.sqrt(max(own, 0.0) / max(float(x @ self.normal @ x), np.finfo(float).tiny)))
 
 
 def fit(data: Whitened, terms: Sequence[Term]) -> Fit:
     """Fit all terms together and score every run with the coefficients of the others."""
-    runs = len(data.target)
+    groups = connected(terms)
+    parts = tuple(_part(data, tuple([terms[i] for i in members])) for members in groups)
+    loss = dict(data.null_loss)
+    for part in parts:
+        loss.update(part.loss)
+    if len(parts) == 1:
+        return Fit(tuple(terms), parts[0].coefficients, parts[0].held_out, loss, parts)
     starts = [0, *accumulate(t.width for t in terms)]
-    coefficients, held_out = np.zeros(starts[-1]), np.zeros((runs, starts[-1]))
-    loss, cancelled = dict(data.null_loss), 0.0
-    for members in connected(terms):
-        part = _part(data, tuple(terms[i] for i in members))
+    coefficients, held_out = np.zeros(starts[-1]), np.zeros((len(data.target), starts[-1]))
+    for members, part in zip(groups, parts, strict=True):
         columns = [k for i in members for k in range(starts[i], starts[i + 1])]
         coefficients[columns], held_out[:, columns] = part.coefficients, part.held_out
-        loss.update(part.loss)
-        cancelled = max(cancelled, part.cancelled)
-    return Fit(tuple(terms), coefficients, held_out, loss, cancelled)
+    return Fit(tuple(terms), coefficients, held_out, loss, parts)
 
 
 def connected(terms: Sequence[Term]) -> list[list[int]]:
     """Return the indices of terms in groups that share channels."""
+    if len({t.channels for t in terms}) == 1:
+        return [list(range(len(terms)))]
     group: dict[Channel, list[int]] = {}
     apart: list[list[int]] = []
     for i, term in enumerate(terms):
@@ -118,32 +134,23 @@ def _part(data: Whitened, terms: tuple[Term, ...]) -> _Part:
 
 
 def _fit_part(data: Whitened, terms: tuple[Term, ...]) -> _Part:
-    channels = sorted({c for t in terms for c in t.channels})
-    pieces = {c: products(data, terms, c) for c in channels}
-    runs, p = len(data.target), sum(t.width for t in terms)
-    normal = sum((n for n, _, _ in pieces.values()), np.zeros((runs, p, p)))
-    right = sum((b for _, b, _ in pieces.values()), np.zeros((runs, p)))
-    limit = np.array([t.limit for t in terms for _ in range(t.width)])
+    pieces = {c: products(data, terms, c) for c in sorted({c for t in terms for c in t.channels})}
+    runs, limit = len(data.target), np.array([t.limit for t in terms for _ in range(t.width)])
+    normal = sum([n for n, _, _ in pieces.values()], np.zeros((runs, len(limit), len(limit))))
+    right = sum([b for _, b, _ in pieces.values()], np.zeros((runs, len(limit))))
     # All runs together come first, then all but one of them.
-    total = normal.sum(axis=0)
-    normals = total - np.concatenate([np.zeros((1, p, p)), normal])
-    rights = right.sum(axis=0) - np.concatenate([np.zeros((1, p)), right])
-    normals += np.diag(np.isfinite(limit).astype(float))
+    total, whole = normal.sum(axis=0), right.sum(axis=0)
+    normals = np.concatenate([total[None], total - normal])
+    rights = np.concatenate([whole[None], whole - right])
+    if (known := np.isfinite(limit)).any():
+        normals += np.diag(known.astype(float))
     solved = solve_within(normals, rights, limit)
     held_out = _with_deviations(solved[1:], normals[0], rights[0], limit)
     loss: dict[tuple[int, Channel], float] = {}
     for c, (a, b, energy) in pieces.items():
         held = energy - 2.0 * np.einsum("rp,rp->r", held_out, b) + np.einsum("rp,rpq,rq->r", held_out, a, held_out)
-        loss |= {(r, c): max(0.0, float(held[r])) for r in range(runs) if (r, c) in data.null_loss}
-    return _Part(terms, solved[0], held_out, loss, _cancelled(terms, solved[0], total))
-
-
-def _cancelled(terms: Sequence[Term], coefficients: Array, normal: Array) -> float:
-    """Return the largest of what a term adds over what all of them add, rms, from their normal matrix (p, p)."""
-    ends = pairwise([0, *accumulate(t.width for t in terms)])
-    own = max(float(coefficients[a:b] @ normal[a:b, a:b] @ coefficients[a:b]) for a, b in ends)
-    whole = float(coefficients @ normal @ coefficients)
-    return float(np.sqrt(max(own, 0.0) / max(whole, np.finfo(float).tiny)))
+        loss |= {(r, c): max(0.0, x) for r, x in enumerate(held.tolist()) if (r, c) in data.null_loss}
+    return _Part(terms, solved[0], held_out, loss, total)
 
 
 def _with_deviations(held_out: Array, normal: Array, right: Array, limit: Array) -> Array:

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cached_property
-from itertools import accumulate
 from typing import NamedTuple
 
 import numpy as np
@@ -29,6 +28,7 @@ class Blocks:
 
     def __init__(self, term: Term, channel: Channel) -> None:
         self.term, self.channel = term, channel
+        self.fixed = any([channel in run for run in term.fixed])
 
     @cached_property
     def of_runs(self) -> list[Array | None]:
@@ -58,10 +58,11 @@ def products(data: Whitened, terms: Sequence[Term], channel: Channel) -> Product
     The energy is that of the target less the fixed parts of all terms; runs without the channel have zeros. Those of
     the leading terms are kept from the fit before: a search tries many last terms beside the same others.
     """
-    trail = data.trails.setdefault(channel, [Step(None, _without_terms(data, channel))])
-    pairs = enumerate(zip(terms, trail[1:], strict=False))
-    same = next((i for i, (a, (b, _)) in pairs if a is not b.term), len(trail) - 1)
-    same = min(same, len(terms))
+    if (trail := data.trails.get(channel)) is None:
+        trail = data.trails[channel] = [Step(None, _without_terms(data, channel))]
+    same, most = 0, min(len(terms), len(trail) - 1)
+    while same < most and trail[same + 1].blocks.term is terms[same]:
+        same += 1
     del trail[same + 1 :]
     for term in terms[same:]:
         blocks = Blocks(term, channel)
@@ -90,15 +91,19 @@ def _extended(data: Whitened, trail: Sequence[Step], new: Blocks) -> Products:
     normal[:, q:, q:] = alone[:, :-1, :-1]
     right[:, q:] = own[:, :-1] - alone[:, :-1, -1]
     energy = energy - 2.0 * own[:, -1] + alone[:, -1, -1]
-    others = [step.blocks for step in trail if step.blocks is not None]
-    starts = accumulate((other.term.width for other in others), initial=0)
-    for other, start in ((o, s) for o, s in zip(others, starts, strict=False) if channel in o.term.channels):
-        both, at = _pair(new, other), slice(start, start + other.term.width)
+    start = 0
+    for other in [blocks for blocks, _ in trail if blocks is not None]:
+        at = slice(start, start := start + other.term.width)
+        if channel not in other.term.channels:
+            continue
+        both = _pair(new, other)
         normal[:, q:, at] = both[:, :-1, :-1]
         normal[:, at, q:] = both[:, :-1, :-1].transpose(0, 2, 1)
-        right[:, q:] -= both[:, :-1, -1]
-        right[:, at] -= both[:, -1, :-1]
-        energy = energy + 2.0 * both[:, -1, -1]
+        if other.fixed:
+            right[:, q:] -= both[:, :-1, -1]
+        if new.fixed:
+            right[:, at] -= both[:, -1, :-1]
+            energy = energy + 2.0 * both[:, -1, -1]
     return normal, right, energy
 
 

@@ -14,7 +14,6 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from sher3_common.compiled import compiled
 from sher3_common.reasons import Reason, reading
 from sher3_common.vectors import Vector
@@ -93,7 +92,7 @@ slow part, `drift_limit` the limit of that since the beginning, over the range o
 following error, demand minus motor motion, without its slow part, `error_limit` its limit at the demanded speed."""
 
 
-def begin_axes(axes: NDArray[Any], motor: Vector, load: Vector) -> None:
+def begin_axes(axes: Any, motor: Vector, load: Vector) -> None:
     """Start afresh, in place: these readings (n,) belong together."""
     for name in (*_MEMORY, "gap_ticks", "drift_ticks", "stray_ticks"):
         axes[name] = 0
@@ -194,7 +193,7 @@ class AxisCheck(Row):
 
     __slots__ = ()
 
-    def __init__(self, scale: AxisScale, settings: MotorDriverSettings, axes: NDArray[Any], number: int) -> None:
+    def __init__(self, scale: AxisScale, settings: MotorDriverSettings, axes: Any, number: int) -> None:
         super().__init__(scale, axes, number, AxisLimits.of(scale, settings)._asdict())
 
     @property

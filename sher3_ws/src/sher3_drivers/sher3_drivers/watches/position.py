@@ -17,7 +17,6 @@ from functools import cache
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from sher3_common.compiled import compiled, direct
 from sher3_common.reasons import Reason, reading
 from sher3_common.vectors import Vector
@@ -41,7 +40,7 @@ newest speeds and force. `brakes` is 1 from a stop on: then `path` is the travel
 may do without any part."""
 
 
-def begin_places(places: NDArray[Any], motor: Vector, load: Vector, effort: Vector) -> None:
+def begin_places(places: Any, motor: Vector, load: Vector, effort: Vector) -> None:
     """Take these readings (n,) as the beginning, in place; the force `effort` [N, N m] is what holds an axis there."""
     for name in _MEMORY:
         places[name] = 0.0
@@ -50,7 +49,7 @@ def begin_places(places: NDArray[Any], motor: Vector, load: Vector, effort: Vect
     places["limit"], places["yields"] = places["plain"], places["elastic"]
 
 
-def brake_places(places: NDArray[Any], rests: bool) -> None:
+def brake_places(places: Any, rests: bool) -> None:
     """Begin a stop, or a rest, in place, where the axes are.
 
     What force explained is of the past, a departure is carried over. A drive that goes on by itself may report a force
@@ -129,7 +128,7 @@ class AxisPosition(Row):
 
     __slots__ = ()
 
-    def __init__(self, scale: AxisScale, settings: MotorDriverSettings, places: NDArray[Any], number: int) -> None:
+    def __init__(self, scale: AxisScale, settings: MotorDriverSettings, places: Any, number: int) -> None:
         limits = {
             "plain": settings.position_angle if scale.revolute else settings.position_distance,
             "elastic": settings.elastic_angle if scale.revolute else settings.elastic_distance,

@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from numpy.typing import NDArray
-
 from sher3_drivers.units import AxisScale
 
 
@@ -22,7 +20,7 @@ class Row:
 
     __slots__ = ("_name", "_number", "_rows", "_unit")
 
-    def __init__(self, scale: AxisScale, rows: NDArray[Any], number: int, limits: Mapping[str, float]) -> None:
+    def __init__(self, scale: AxisScale, rows: Any, number: int, limits: Mapping[str, float]) -> None:
         self._name, self._unit, self._rows, self._number = scale.name, scale.unit, rows, number
         for name, value in limits.items():
             rows[name][number] = value

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import suppress
 
 import numpy as np
 from sher3_diagnosis.channel import Array
@@ -103,10 +104,12 @@ def _titles(rows: Rows, comma: bool) -> int:
     usual = rows[usual_row(len(rows))]
     numeric = [i for i, cell in enumerate(usual) if _is_number(cell, comma)]
     first = next((i for i, row in enumerate(rows) if _in_table(row, numeric, len(usual), comma)), 0)
-    filled = {i for row in rows[first:] for i, cell in enumerate(row) if _filled(cell)}
-    above = [{i for i, cell in enumerate(row) if _filled(cell)} for row in rows[:first]]
-    if not above or len(above) > MOST_TITLES:
+    if not 0 < first <= MOST_TITLES:
         return 0
+    filled: set[int] = set()
+    for row in rows[first:]:
+        filled |= {i for i in range(len(row)) if i not in filled and _filled(row[i])}
+    above = [{i for i, cell in enumerate(row) if _filled(cell)} for row in rows[:first]]
     if _known_units(rows[first - 1]) and first > 1 and len(rows[first - 2]) == len(rows[first - 1]):
         return first - 2
     fits = [len(row & filled) - len(row - filled) for row in above]
@@ -176,6 +179,8 @@ def _with_strokes(header: Sequence[str]) -> list[str]:
 
 def _column(cells: Sequence[str], comma: bool) -> Array | None:
     """Cells as (n,) or, where they hold lists, (n, k); None where more than a few are text, which become nan."""
+    with suppress(ValueError):  # numbers alone, as most columns are
+        return np.array([float(cell.replace(",", ".") if comma else cell) for cell in cells])
     values = [value_of(cell, comma) for cell in cells]
     text = sum(value is None for value in values)
     if text > FEW * len(values):
