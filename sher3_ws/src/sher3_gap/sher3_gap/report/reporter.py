@@ -7,19 +7,38 @@ from collections.abc import Mapping, Sequence
 from sher3_description import ACTUATORS
 from sher3_diagnosis.channel import STAGES, Array, Channel
 from sher3_diagnosis.finding import Findings
-from sher3_diagnosis.reporter import FLOWS, Isolability, Output, Reporter, Trace
+from sher3_diagnosis.reporter import FLOWS, Isolability, Output, Reporter, Trace, counted
 
 from sher3_gap.evidence import SherEvidence
 from sher3_gap.excitation import catalogue
 from sher3_gap.report.drawing import robot_drawing
-from sher3_gap.report.topics import data_text, exact_stages, recorded_topics
+from sher3_gap.signals import RunSignals
 from sher3_gap.stages.exact.timing import demand_in_force
 from sher3_gap.stages.isolability import structure
 from sher3_gap.stages.residuals import mean_force
 
+TOPIC_OF = {
+    "motor": "drives/measured_js",
+    "reference": "setpoint_js",
+    "command": "servo_jv",
+    "echo": "drives/setpoint_jv",
+    "load": "measured_js",
+    "wrench": "force/measured_cf",
+    "tracker_position": "tracker/measured_cp",
+}
+"""Signal of a run -> topic it comes from."""
+EXACT_NEEDS = {"controller": ("command", "reference", "load"), "transport": ("command", "echo")}
+"""Exact stage -> signals it is computed from."""
+
+
 AT_TIP = "tip − nominal tip"
 DEVIATIONS = {"transmission": "load − motor", "mechanism": AT_TIP, "structure": AT_TIP, "sensing": "reading − nominal"}
 """Stages whose deviation from the model is itself the picture -> its name."""
+
+
+def recorded(runs: Sequence[RunSignals], *names: str) -> bool:
+    """Return whether some run has all of these signals."""
+    return any(all(getattr(run, name) is not None for name in names) for run in runs)
 
 
 class SherReporter(Reporter[SherEvidence]):
@@ -33,11 +52,14 @@ class SherReporter(Reporter[SherEvidence]):
 
     def data(self, parts: Sequence[SherEvidence]) -> str:
         """Return runs, their duration and their excitations."""
-        return data_text(parts[0].runs)
+        runs = parts[0].runs
+        seconds = sum(run.ticks * run.period for run in runs)
+        return f"{len(runs)} runs, {seconds:.0f} s: {counted([run.excitation for run in runs])}"
 
     def exact_places(self, parts: Sequence[SherEvidence]) -> Mapping[str, Sequence[str]]:
         """Return the axes for transport and controller, where their topics were recorded."""
-        return {stage: ACTUATORS if recorded else () for stage, recorded in exact_stages(parts[0].runs).items()}
+        runs = parts[0].runs
+        return {stage: ACTUATORS if recorded(runs, *needs) else () for stage, needs in EXACT_NEEDS.items()}
 
     def purpose(self, excitation: str) -> str:
         """Return what an excitation of the standard set is for; a suffix such as `_0.8` scales it."""
@@ -46,7 +68,7 @@ class SherReporter(Reporter[SherEvidence]):
 
     def isolability(self, parts: Sequence[SherEvidence]) -> Isolability:
         """Return which effects the recorded topics can tell apart."""
-        return structure(recorded_topics(parts[0].runs))
+        return structure([topic for name, topic in TOPIC_OF.items() if recorded(parts[0].runs, name)])
 
     def run_name(self, evidence: SherEvidence, run: int) -> str:
         """Return name, excitation and repeat."""
@@ -80,7 +102,7 @@ class SherReporter(Reporter[SherEvidence]):
 
     def first_traces(self, diagnosis: Findings[SherEvidence]) -> list[Trace]:
         """Return the picture of the transport stage where it failed."""
-        from sher3_gap.report.transport import transport_trace
+        from sher3_gap.report.traces import transport_trace
 
         if not any(f.where.stage == "transport" for f in diagnosis.exact):
             return []
@@ -89,7 +111,7 @@ class SherReporter(Reporter[SherEvidence]):
 
     def last_traces(self, diagnosis: Findings[SherEvidence]) -> list[Trace]:
         """Return the picture of the tip in free runs of the simulator."""
-        from sher3_gap.report.free_run import free_run_trace
+        from sher3_gap.report.traces import free_run_trace
 
         found = free_run_trace(diagnosis.findings[0].evidence, diagnosis.verdict.causes)
         return [] if found is None else [found]
