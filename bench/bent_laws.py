@@ -13,12 +13,12 @@ that leave between 2 and 20 %.
 from __future__ import annotations
 
 import argparse
-import math
 import time
 from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
+from other_odds import causes_of, surprise
 from sher3_challenge.calibration.drawn import draw
 from sher3_challenge.calibration.held_out import by_plant, by_shape, groups, judged_by, middle
 from sher3_challenge.calibration.labels import answer_of
@@ -69,10 +69,7 @@ def main() -> None:
     for name, seen in alike.items():
         own = {"all": seen, **groups(seen, by_shape), **groups(seen, by_plant)}
         judged = {group: judged_by(in_force(), rows) for group, rows in own.items()}
-        stated = [c for j in judged["all"] for c in j.causes]
-        loss = -np.mean([math.log(max(p if right else 1.0 - p, 1e-3)) for p, right in stated])
-        sure = [right for p, right in stated if p >= 0.95]
-        print(f"{name}: log loss {loss:.2f} (n {len(stated)}); stated 95 %: {sum(sure)} of {len(sure)} right")
+        print(f"{name}: {surprise(causes_of(judged['all']))}")
         print(written({group: rates(j) for group, j in judged.items()}) + "\n")
     whole = {(o.plant, o.case): o for o in found if not o.without}
     causes = [

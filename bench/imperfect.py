@@ -29,7 +29,6 @@ from sher3_challenge.calibration.held_out import item_of as plain_item
 from sher3_challenge.calibration.held_out import reproduced as reproduced_plain
 from sher3_challenge.calibration.labels import answer_of
 from sher3_challenge.calibration.observe import Observation, observed_findings
-from sher3_challenge.score.reliability import calibration_error
 from sher3_common import Sher3Error
 from sher3_diagnosis import diagnose
 from sher3_diagnosis.finding import LIBRARY, OUTSIDE, Item
@@ -235,19 +234,6 @@ def rates_of(judged: Sequence[tuple[Seen, str]]) -> str:
     return ", ".join(out)
 
 
-def surprise(judged: Sequence[Judgement]) -> str:
-    """Return log loss and calibration error of the causes' odds."""
-    stated = [c for j in judged for c in j.causes]
-    if not stated:
-        return "no causes"
-    loss = -np.mean([math.log(max(p if right else 1.0 - p, plain.LEAST)) for p, right in stated])
-    sure = [right for p, right in stated if p >= 0.95]
-    error = calibration_error(stated)
-    return (
-        f"log loss {loss:.2f}, calibration error {error:.2f} (n {len(stated)}), 95 %: {sum(sure)} of {len(sure)} right"
-    )
-
-
 def spread_of(rows: Sequence[Seen]) -> str:
     """Return how far what places leave is from the level of their machine, in logarithms: places with right causes."""
     off: list[float] = []
@@ -269,7 +255,8 @@ def table(options: argparse.Namespace) -> None:
         print(f"{source}: what a place leaves, over the level: {spread_of(rows)}")
         for name, own in (("labelled robots' level", False), ("own level", True)):
             judged = list(judgements(rows, own))
-            print(f"{source}: odds, {name}: {rates_of([(j.row, j.status) for j in judged])}; {surprise(judged)}")
+            told = plain.surprise([c for j in judged for c in j.causes])
+            print(f"{source}: odds, {name}: {rates_of([(j.row, j.status) for j in judged])}; {told}")
     for row in (r for r in kept if r.source == "measured"):
         known = next(m for m in measured.SETS if m.name == row.machine)
         told = [

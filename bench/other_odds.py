@@ -264,9 +264,10 @@ def seen(kind: str, seeds: range, kept: Path) -> Iterator[Observation]:
             yield from found
 
 
-def surprise(judgements: Sequence[Judgement]) -> str:
-    """Return log loss and calibration error of the causes' odds, and how many there are."""
-    stated = [c for j in judgements for c in j.causes]
+def surprise(stated: Sequence[tuple[float, bool]]) -> str:
+    """Return log loss and calibration error of odds of causes beside whether each is right, and how many there are."""
+    if not stated:
+        return "no causes"
     loss = -np.mean([math.log(max(p if right else 1.0 - p, LEAST)) for p, right in stated])
     sure = [right for p, right in stated if p >= 0.95]
     return (
@@ -275,19 +276,24 @@ def surprise(judgements: Sequence[Judgement]) -> str:
     )
 
 
+def causes_of(judged: Sequence[Judgement]) -> list[tuple[float, bool]]:
+    """Return the odds of all causes, and whether the library has them."""
+    return [c for j in judged for c in j.causes]
+
+
 def shown(kind: str, found: Sequence[Observation]) -> None:
     """Print how the odds hold on every source of a kind, and the table of each left out."""
     robot, own = in_force(), groups(found, by_plant)
     left_out = held_out(found, by_plant, partial(updated, robot))
     for source, rows in own.items():
         alone = [without_evidence(row, "part") for row in rows]
-        print(f"{source}: weights of SHER, each cause alone: {surprise(judged_by(robot, alone))}")
-        print(f"{source}: weights of SHER: {surprise(judged_by(robot, rows))}")
-        print(f"{source}: moved by the other sources: {surprise(left_out[source])}")
+        print(f"{source}: weights of SHER, each cause alone: {surprise(causes_of(judged_by(robot, alone)))}")
+        print(f"{source}: weights of SHER: {surprise(causes_of(judged_by(robot, rows)))}")
+        print(f"{source}: moved by the other sources: {surprise(causes_of(left_out[source]))}")
     print(f"\n{kind}: status by odds, weights of SHER")
     print(written({name: rates(judged_by(robot, rows)) for name, rows in own.items()}))
     for source, rows in own.items():
-        print(f"\n{source}\n" + curve([c for j in judged_by(robot, rows) for c in j.causes]))
+        print(f"\n{source}\n" + curve(causes_of(judged_by(robot, rows))))
 
 
 def main() -> None:

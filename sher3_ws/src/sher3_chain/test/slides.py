@@ -16,7 +16,7 @@ def reference(t):
     return 0.04 * np.sin(1.3 * t) + 0.015 * np.sin(4.1 * t + 0.4)
 
 
-def driven(seconds=16.0, coulomb=0.0, viscous=0.0, offset=0.0, limit=np.inf, fine=20):
+def driven(seconds=16.0, coulomb=0.0, viscous=0.0, offset=0.0, limit=np.inf, fine=20, mass=MASS):
     """Position, reference and command (n, 3) of a mass under a PD law, with a smoothed friction law, midpoint steps."""
     n, h = int(seconds / PERIOD), PERIOD / fine
     q, v, last = float(reference(0.0)), 0.0, float(reference(0.0))
@@ -26,7 +26,7 @@ def driven(seconds=16.0, coulomb=0.0, viscous=0.0, offset=0.0, limit=np.inf, fin
         u = float(np.clip(KP * (reference(k * PERIOD) - read) - KD * (read - last) / PERIOD, -limit, limit))
         rows[k], last = (read, reference(k * PERIOD), u), read
         for _ in range(fine):
-            a = (u - viscous * v - coulomb * np.tanh(v / 2e-4) - offset) / MASS
+            a = (u - viscous * v - coulomb * np.tanh(v / 2e-4) - offset) / mass
             q, v = q + h * (v + 0.5 * h * a), v + h * a
     return rows
 

@@ -7,7 +7,7 @@ here is the same for all machines.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, Generic, NamedTuple, TypeVar
 
@@ -22,6 +22,7 @@ from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.effect import Effect
 from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.finding import ExactFinding, Finding, Findings
+from sher3_diagnosis.fit.term import Term
 from sher3_diagnosis.fit.tolerance import within
 from sher3_diagnosis.fit.whitened import Whitened
 from sher3_diagnosis.reporter import Reporter
@@ -42,6 +43,8 @@ class Rehearsal(NamedTuple):
         added: what the recorded runs had not, as a tracker or another temperature, in words; empty for none.
         data: its runs, of which no residual is looked at.
         elsewhere: whether they go where none was recorded, so that a law may be bent there as nobody has seen.
+        as_built: makes the deviations within tolerance that recorded and further runs together show, in their order;
+            None where they are those that the recorded runs show.
     """
 
     excitation: str
@@ -49,6 +52,7 @@ class Rehearsal(NamedTuple):
     added: str
     data: Whitened
     elsewhere: bool = True
+    as_built: Callable[[], Sequence[Term]] | None = None
 
 
 @dataclass(frozen=True)

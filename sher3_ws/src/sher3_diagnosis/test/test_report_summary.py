@@ -110,6 +110,9 @@ def test_commands_are_named_for_a_simulated_machine_only():
     foretold = TELLS.model_copy(update={"added": "a tracker at the tip", "expected_odds": 0.97})
     lines = dict(five_lines(open_one.model_copy(update={"next_experiment": foretold}), Reporter()))
     assert lines["next"] == "loads, with a tracker at the tip, tells backlash / cogging apart; expected odds 97 %"
+    bet = Answer(causes=[BACKLASH], probability=0.5)
+    hardly = {"next_experiment": foretold.model_copy(update={"expected_odds": 0.48}), "places": [placed(PLACE, [bet])]}
+    assert "hardly tells backlash / cogging" in dict(five_lines(open_one.model_copy(update=hardly), Reporter()))["next"]
 
 
 @pytest.mark.parametrize(("odds", "tried"), [(0.3, True), (0.05, False)])

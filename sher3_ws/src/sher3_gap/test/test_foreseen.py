@@ -8,7 +8,7 @@ from sher3_diagnosis.channel import AT_TIP, Channel
 from sher3_effects import plants
 from sher3_gap import diagnose_runs
 from sher3_gap.evidence import gather
-from sher3_gap.experiments.foreseen import SAME, TRACKED, WARMED, foreseen
+from sher3_gap.experiments.foreseen import LOADED, SAME, TRACKED, WARMED, foreseen
 from simulated import ROBOT, runs_of, signals
 
 SENSOR = Channel("sensing", "force_sensor")
@@ -29,8 +29,8 @@ def test_known_loads_and_a_tracker_are_foreseen_where_the_case_has_some_and_wher
     assert {x.added for x in tracked} == {"", WARMED}
     assert {"loads", "postures"} <= {x.excitation for x in tracked}
     bare = list(foreseen(gather(untracked(runs_of(["steps"], repeats=2)), ROBOT)))
-    assert list(dict.fromkeys(x.added for x in bare)) == ["", TRACKED, WARMED]
-    assert "loads" not in {x.excitation for x in bare}
+    assert list(dict.fromkeys(x.added for x in bare)) == ["", LOADED, TRACKED, WARMED]
+    assert [x.added for x in bare if x.excitation == "loads"] == [LOADED]
     assert {x.added for x in bare if any(c.stage in AT_TIP for run in x.data.target for c in run)} == {TRACKED}
 
 
@@ -38,6 +38,15 @@ def test_a_robot_without_a_cause_is_foreseen_at_its_floor():
     seen = next(foreseen(gather(signals(runs_of(["steps"], repeats=2)), ROBOT)))
     loss = sum(seen.data.null_loss.values()) / sum(seen.data.samples.values())
     assert loss < 1.0
+
+
+def test_a_new_sensor_shows_deviations_as_built_that_no_recorded_run_does():
+    evidence = gather(untracked(runs_of(["steps"], repeats=2)), ROBOT)
+    tried = next(x for x in foreseen(evidence) if x.added == TRACKED)
+    before, after = ({c.stage for t in terms for c in t.channels} for terms in (evidence.nuisance, tried.as_built()))
+    assert not before & set(AT_TIP)
+    assert after & set(AT_TIP)
+    assert all(len(t.columns) == len(evidence.data.views) + len(tried.data.views) for t in tried.as_built())
 
 
 def test_a_tracker_is_asked_for_where_a_lead_and_an_encoder_scale_give_the_same(short_strokes):

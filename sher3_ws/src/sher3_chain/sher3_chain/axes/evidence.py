@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 from sher3_diagnosis.channel import Channel, Residual, Residuals
 from sher3_machines.errors import MachineError
+from sher3_machines.intake.mending.parts import whole
 from sher3_machines.thresholds import BLOCKS
 
 from sher3_chain.axes.floors import floors_of
@@ -33,7 +34,8 @@ class AxisEvidence(ChainEvidence):
 
     Attributes:
         axis: as described.
-        mass: nominal or identified, kg or kg m^2; 0 where the force balance is not looked at.
+        mass: nominal or identified, kg or kg m^2, without what runs carried; 0 where the force balance is not looked
+            at.
         mass_interval: 95 %, of an identified mass.
         untold: why the force balance is not judged, where a mass could not be identified.
         notes: what was put right of the effort.
@@ -86,7 +88,8 @@ def _gathered(runs: Sequence[AxesRun], axis: Axis, repeats: bool) -> AxisEvidenc
                 notes = [*notes, f"{axis.name}: {told}"]
             else:
                 untold = str(error)
-    records = [AxisView(s, axis, mass, load_mass) for s in signals]
+    carried = carried_by(axis, [s.name for s in signals])
+    records = [AxisView(s, axis, mass + m, load_mass) for s, m in zip(signals, carried, strict=True)]
     found = [_judged(residuals_of(view), untold) for view in records]
     floors = floors_of(records, found, repeats)
     data = in_blocks(records, found, floors)
@@ -105,6 +108,16 @@ def _gathered(runs: Sequence[AxesRun], axis: Axis, repeats: bool) -> AxisEvidenc
         untold=untold,
         notes=notes,
     )
+
+
+def carried_by(axis: Axis, runs: Sequence[str]) -> list[float]:
+    """Return the known mass on the axis in each run, kg or kg m^2; raises MachineError where a run is none of these."""
+    unknown = sorted(axis.carried.keys() - {whole(run) for run in runs})
+    if unknown:
+        raise MachineError(
+            f"axis {axis.name}: `carried` names no run", value=unknown[0], limit=runs, remedy="name runs as their files"
+        )
+    return [axis.carried.get(whole(run), 0.0) for run in runs]
 
 
 def with_zeros(axis: Axis) -> list[Channel]:

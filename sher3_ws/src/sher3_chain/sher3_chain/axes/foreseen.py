@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 from sher3_diagnosis.channel import Floors
+from sher3_diagnosis.fit.whitened import Whitened
 from sher3_diagnosis.machine import Rehearsal
 
 from sher3_chain.axes.evidence import AxisEvidence, residuals_of
@@ -14,29 +15,34 @@ from sher3_chain.axes.view import AxisView
 from sher3_chain.chain.evidence import in_blocks
 from sher3_chain.readings.signals import signals_of
 
-SPEEDS = {"the same motion at twice the speed": 2.0, "the same motion at half the speed": 0.5}
+SPEEDS = {
+    "the same motion at twice the speed": 2.0,
+    "the same motion at half the speed": 0.5,
+    "the same motion at a quarter of the speed": 0.25,
+}
+"""What a friction does near rest shows the better the slower the motion; slower still would take too long."""
 WEIGHED = "a known mass as large as its own"
 WHY = "what the rivals foretell differs most here; within what the axis can do"
+WHY_WEIGHED = (
+    "a gain of the drive grows with what it must give, a mass stays; described as `carried`, beside this record"
+)
 
 
 def foreseen(evidence: AxisEvidence) -> Iterator[Rehearsal]:
-    """Yield the recorded motions faster and slower, and then with a known mass on a driven axis.
-
-    A mass tells a weight or an inertia, which stay, from a gain of the drive, which grows with what it must give.
-    """
+    """Yield the recorded motions faster and slower, and then with a known mass on a driven axis."""
     for name, speed in SPEEDS.items():
-        yield _rehearsed(evidence, name, speed, "", evidence.mass)
+        yield Rehearsal(name, WHY, "", _runs(evidence, name, speed, 0.0))
     if evidence.mass > 0.0:
-        yield _rehearsed(evidence, "the same motion", 1.0, WEIGHED, 2.0 * evidence.mass)
+        yield Rehearsal("the same motion", WHY_WEIGHED, WEIGHED, _runs(evidence, "weighed", 1.0, evidence.mass))
 
 
-def _rehearsed(evidence: AxisEvidence, name: str, speed: float, added: str, mass: float) -> Rehearsal:
+def _runs(evidence: AxisEvidence, name: str, speed: float, carried: float) -> Whitened:
     axis, floor = evidence.axis, _floors(evidence)
     runs = [replace(run, period=run.period / speed) for run in evidence.runs]
-    behind = [view.load_mass for view in evidence.records]
-    records = [AxisView(signals_of(r, axis, name), axis, mass, m) for r, m in zip(runs, behind, strict=True)]
+    views = zip(runs, evidence.records, strict=True)
+    records = [AxisView(signals_of(r, axis, name), axis, v.mass + carried, v.load_mass) for r, v in views]
     found = [{c: x for c, x in residuals_of(view).items() if c in floor} for view in records]
-    return Rehearsal(name, WHY, added, in_blocks(records, found, [floor] * len(records)))
+    return in_blocks(records, found, [floor] * len(records))
 
 
 def _floors(evidence: AxisEvidence) -> Floors:

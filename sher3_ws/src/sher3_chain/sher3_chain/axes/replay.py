@@ -48,7 +48,7 @@ def replay(evidence: AxisEvidence, causes: Sequence[Cause]) -> Replay | None:
         first = view.release if axis.free else 0
         measured = run.signals[axis.name]["position"][first:]
         laws = (Law(), law_of(causes))
-        errors = np.column_stack([simulate(run, axis, evidence.mass, law, first) - measured for law in laws])
+        errors = np.column_stack([simulate(run, axis, view.mass, law, first) - measured for law in laws])
         squares.append(np.mean(errors**2, axis=0))
         rows += [[*(np.mean(part**2, axis=0) / count**2), 1.0] for part in np.array_split(errors, BLOCKS)]
     before, after = np.sqrt(np.mean(squares, axis=0))

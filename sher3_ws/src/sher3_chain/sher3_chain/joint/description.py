@@ -6,7 +6,7 @@ Lengths are in m, angles in rad, forces in N and torques in N m; the unit of eac
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
@@ -79,6 +79,8 @@ class Axis(Strict):
 
     Attributes:
         mass: kg or kg m^2; `unknown`: identified from the data; None: the force balance is not looked at.
+        carried: file name of a run, without its ending -> known mass that was put on the axis in it, kg or kg m^2. It
+            moves with the axis; its weight, where the axis lifts it, is `applied`.
         viscous: viscous coefficient, N/(m/s) or N m/(rad/s).
         encoder_resolution: one count, m or rad.
         encoder_at: side of the transmission that `position` is read on; with one encoder it says what that one hides.
@@ -93,6 +95,7 @@ class Axis(Strict):
     signals: Signals
     command_law: CommandLaw
     mass: Annotated[float, Field(gt=0.0)] | Literal["unknown"] | None = None
+    carried: Mapping[str, Annotated[float, Field(gt=0.0)]] = Field(default_factory=dict)
     viscous: float = Field(default=0.0, ge=0.0)
     gravity: Gravity = Gravity()
     encoder_resolution: float = Field(gt=0.0)
@@ -108,6 +111,8 @@ class Axis(Strict):
             raise ValueError(f"axis {self.name}: a position servo needs its recorded reference")
         if law.kind == "force" and not self.driven and self.needs_force:
             raise ValueError(f"axis {self.name}: a force-driven axis needs its recorded command or effort")
+        if self.carried and not isinstance(self.mass, float):
+            raise ValueError(f"axis {self.name}: what it carried is told beside a stated `mass` alone")
         return self
 
     @property

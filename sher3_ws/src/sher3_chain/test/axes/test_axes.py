@@ -1,5 +1,7 @@
 """Simulated axes: what the engine says of them."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from sher3_chain.axes.foreseen import WEIGHED
@@ -112,6 +114,23 @@ def test_wrong_mass_and_force_scale_stay_rivals():
     assert set(asked.separates) == named
     assert asked.added == WEIGHED
     assert asked.expected_odds > 0.9
+
+
+def test_a_record_with_a_known_mass_and_the_first_are_judged_as_one():
+    first, second = (run_of(driven(seconds=12.0, mass=m)) for m in (MASS, 2.0 * MASS))
+    runs = [first, replace(second, name="weighed")]
+    verdict = diagnose(machine(mass=0.8 * MASS, carried={"weighed": MASS}), runs).verdict
+    assert verdict.status == "attributed"
+    (cause,) = verdict.causes
+    assert cause.effect == "payload_mass" and not cause.rivals
+    assert cause.parameters["mass"].value == pytest.approx(0.2 * MASS, rel=0.02)
+
+
+def test_what_was_carried_names_a_run_and_stands_beside_a_stated_mass():
+    with pytest.raises(MachineError, match="names no run"):
+        diagnose(machine(carried={"other": 1.0}), [run_of(driven(seconds=2.0))])
+    with pytest.raises(ValueError, match="beside a stated `mass`"):
+        machine(mass="unknown", carried={"run": 1.0})
 
 
 def test_a_force_no_effect_makes_is_not_explained():

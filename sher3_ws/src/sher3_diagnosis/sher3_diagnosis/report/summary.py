@@ -191,7 +191,10 @@ def _next(verdict: Verdict, reporter: Reporter[Any], case: str, folder: str) -> 
     if e is not None:
         added = f", with {e.added}," if e.added else ""
         expected = "" if e.expected_odds is None else f"; expected odds {share(e.expected_odds)}"
-        tells = f"{e.excitation}{added} tells {' / '.join(words(i).lower() for i in e.separates)} apart{expected}"
+        bet = verdict.places[0].bet if verdict.places else None
+        told = e.expected_odds is None or bet is None or e.expected_odds > bet.probability
+        apart = f"{' / '.join(words(i).lower() for i in e.separates)} apart{expected}"
+        tells = f"{e.excitation}{added} {'tells' if told else 'hardly tells'} {apart}"
         return f"`sher3 gap experiment {_file(case, folder)} {case}`: {tells}" if reporter.simulated else tells
     line = command(verdict, reporter, case, folder)
     return "none" if line is None else f"`{line[0]}` {line[1]}"

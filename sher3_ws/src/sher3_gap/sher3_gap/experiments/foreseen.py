@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 from sher3_description.contract import REFERENCE_TEMPERATURE
 from sher3_diagnosis.channel import AT_TIP, Floors
+from sher3_diagnosis.fit.term import Term
+from sher3_diagnosis.fit.tolerance import as_built
 from sher3_diagnosis.fit.whitened import Whitened
 from sher3_diagnosis.machine import Rehearsal
 
 from sher3_gap.case.loading import signals_of
-from sher3_gap.evidence import SherEvidence, gather
+from sher3_gap.evidence import SherEvidence, gather, tolerated
 from sher3_gap.excitation import catalogue, excite
 from sher3_gap.experiments.rehearsal import rehearse
 from sher3_gap.experiments.separation import floors_of
@@ -24,7 +27,7 @@ REPEATS = 2
 WHY = f"what the rivals foretell differs most here; twice in each of the postures {' and '.join(APART)}"
 WARMER = 5.0
 """Degrees by which a robot is warmed for an experiment, K: an hour of work in a warm room."""
-TRACKED, WARMED = "a tracker at the tip", f"the robot {WARMER:g} K warmer"
+LOADED, TRACKED, WARMED = "known weights on the tip", "a tracker at the tip", f"the robot {WARMER:g} K warmer"
 SAME = "the recorded excitations"
 SAME_WHY = "nothing but the warmth differs, so that nothing else can be taken for it; under names of their own"
 
@@ -32,26 +35,35 @@ SAME_WHY = "nothing but the warmth differs, so that nothing else can be taken fo
 def foreseen(evidence: SherEvidence) -> Iterator[Rehearsal]:
     """Yield each excitation of the standard set, twice in each of two postures, with the floors of a case.
 
-    First as the case was recorded; then with the tip tracked, where it was not; then with the robot warmed, before that
-    the recorded excitations once more. Known loads only where the case has some: whoever has none cannot put any on.
+    First as the case was recorded; then with known weights or with the tip tracked, where it had none; then with the
+    robot warmed, before that the recorded excitations once more.
     """
     floor = floors_of(evidence)
     loads = any(run.payload for run in evidence.runs)
     names = [n for n in catalogue() if n != "task" and (loads or n != "loads")]
     usual = temperature_of(evidence)
-    tracked = any(c.stage in AT_TIP for c in floor)
-    ways = {"": usual} | ({} if tracked else {TRACKED: usual}) | {WARMED: usual + WARMER}
-    for added, temperature in ways.items():
+    ways = {"": (names, usual)}
+    ways |= {} if loads else {LOADED: (["loads"], usual)}
+    ways |= {} if any(c.stage in AT_TIP for c in floor) else {TRACKED: (names, usual)}
+    ways |= {WARMED: (names, usual + WARMER)}
+    for added, (tried, temperature) in ways.items():
         if added == WARMED:
             yield Rehearsal(SAME, SAME_WHY, WARMED, _warmed(evidence, floor, temperature), elsewhere=False)
-        for name in names:
-            yield Rehearsal(name, WHY, added, _runs(name, evidence, floor, temperature, added == TRACKED))
+        for name in tried:
+            data = _runs(name, evidence, floor, temperature, added == TRACKED)
+            yield Rehearsal(name, WHY, added, data, as_built=partial(_as_built, evidence, data))
 
 
 def temperature_of(evidence: SherEvidence) -> float:
     """Return the mean temperature of a case, deg C; the reference where it was not recorded."""
     known = [run.temperature.mean() for run in evidence.runs if run.temperature is not None]
     return float(np.mean(known)) if known else REFERENCE_TEMPERATURE
+
+
+def _as_built(evidence: SherEvidence, more: Whitened) -> Sequence[Term]:
+    """Return the deviations within tolerance that a case and further runs show together: new places show more."""
+    both = evidence.data.with_runs(more, more.target)
+    return as_built(both, list(tolerated(both, evidence.robot)))
 
 
 def _warmed(evidence: SherEvidence, floor: Floors, temperature: float) -> Whitened:

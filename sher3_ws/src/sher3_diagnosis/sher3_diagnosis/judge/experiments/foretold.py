@@ -23,7 +23,7 @@ from sher3_diagnosis.judge.probabilities import judged
 
 LABELLED = LEVELS[:4]
 """Shares of a law's power by which it may be bent: the levels that labelled robots were drawn with."""
-OF_TODAY = ("law", "place", "anything", "spread")
+OF_TODAY = ("law", "place", "anything")
 """Evidence that further runs would change in a way that a drawn bend does not tell."""
 
 
@@ -58,28 +58,32 @@ def _bends(more: Whitened, channel: Channel, level: float) -> dict[int, Array]:
     }
 
 
-def with_bend(j: Judged, after: Fit, data: Whitened, recorded: int, worth: float) -> float:
+def with_bend(j: Judged, before: Fit, after: Fit, data: Whitened, worth: float) -> float:
     """Return the probability of the library after further runs, on which the law of a cause is bent.
 
     Args:
         j: the cause as it is judged today.
-        after: the fit to recorded and further runs; the cause is its last term.
+        before: the fit to the recorded runs; the cause is its last term.
+        after: the fit to recorded and further runs.
         data: these runs, of which the further ones have no noise.
-        recorded: how many there are today.
         worth: loss that the cause takes off all runs.
     """
-    channel = j.item.channel
-    share = stray = sum(x for (r, _), x in after.loss.items() if r >= recorded) / max(worth, 1.0)
+    channel, recorded = j.item.channel, len(before.loro_coefficients)
     new = {
         r: data.target[r][channel].reshape(-1, data.residuals[r][channel].values.shape[1])
         for r in range(recorded, len(data.target))
         if channel in data.target[r]
     }
+    worth = max(worth, 1.0)
+    stray = bend = max(0.0, after.total - before.total) / worth
     if new:
         parts = [added(after, i, channel, new) for i in range(len(after.terms))]
         rest = np.concatenate(list(new.values())) - sum(parts)
         stray *= stray_share(np.sqrt(rest**2 + 1.0), parts[-1])  # beside the noise that the floor has
     known = {name: x for name, x in j.item.numbers.items() if name not in OF_TODAY}
-    bent = {"left": known["left"] + share, "stray": known["stray"] + stray}
+    bent = {"left": known["left"] + bend, "stray": known["stray"] + stray}
+    if "spread" in known:
+        steady = sum(x for (r, _), x in after.loss.items() if r < recorded) - before.total
+        bent["spread"] = known["spread"] + max(0.0, steady) / worth
     anew = judged(replace(j.item, numbers=known | bent), in_force(), j.closure)
     return min(j.library, anew.library)

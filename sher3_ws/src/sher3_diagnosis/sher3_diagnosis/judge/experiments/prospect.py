@@ -1,0 +1,132 @@
+"""What further runs would make of the odds of a cause and its rivals, each in turn taken to be at work.
+
+The recorded runs stay as they were, and those to come are as the rival's fit foretells them. All rivals are then fitted
+to both, as the next diagnosis would do; how far they stay behind is turned into odds as in a verdict. Where it is open
+which form a rival's law has, each form may be at work, and each may stand in for another effect.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from sher3_diagnosis.attribute.candidates import possible
+from sher3_diagnosis.attribute.rivals import unlikeness
+from sher3_diagnosis.finding import Finding, Judged
+from sher3_diagnosis.fit.fitting import Fit, Term, fit, make_term
+from sher3_diagnosis.fit.term import again
+from sher3_diagnosis.fit.tolerance import AsBuilt
+from sher3_diagnosis.fit.whitened import Whitened
+from sher3_diagnosis.judge.bets import LISTED, term_of
+from sher3_diagnosis.judge.calibration.calibration import in_force
+from sher3_diagnosis.judge.experiments.foretold import foretold, with_bend
+from sher3_diagnosis.judge.probabilities import shares_of
+
+FORMS = 10
+"""Forms of a law that further runs choose among: what grows with the warmth, whether a mass hangs on its axis, which
+force shows on which axis. Laws of more forms have a number in them, which the recorded runs tell."""
+
+
+@dataclass(frozen=True)
+class Prospect:
+    """What an experiment promises, on average over the rivals by their odds.
+
+    Attributes:
+        odds: probability after it of the effect that is at work.
+        separation: by how much the closest of the others then stays behind, per sample, in squares of the floor.
+    """
+
+    odds: float
+    separation: float
+
+
+@dataclass(frozen=True)
+class Law:
+    """A form of a rival's law that the recorded runs leave open.
+
+    Attributes:
+        effect: number of the rival among the candidates.
+        odds: that it is at work, if one of the laws is.
+        found: the fit to the recorded runs, this law last.
+    """
+
+    effect: int
+    odds: float
+    found: Fit
+
+
+@dataclass(frozen=True)
+class Rivals:
+    """A cause and its rivals in all forms of their laws that explain the recorded runs as well."""
+
+    judged: Judged
+    data: Whitened
+    laws: Sequence[Law]
+
+    @classmethod
+    def of(cls, finding: Finding, judged: Judged) -> Rivals:
+        """Return those of a cause; the finding has all causes. Forms of one law share its odds as effects do."""
+        index, data, laws = judged.item.index, finding.evidence.data, []
+        assert index is not None
+        others = finding.attribution.fit.others(index)
+        worth = fit(data, others).total - finding.attribution.fit.total
+        whole = sum(judged.effects[k] for k in sharing(judged))
+        for k in sharing(judged):
+            own, *other = (fit(data, [*others, t]) for t in _forms(data, term_of(finding, judged, k)))
+            forms = [own, *(f for f in other if possible(f))]
+            far = np.array([unlikeness(f, own.total, worth) for f in forms])
+            odds = shares_of(far, in_force()) * judged.effects[k] / whole
+            laws += [Law(k, float(p), f) for p, f in zip(odds, forms, strict=True) if p >= LISTED]
+        return cls(judged, data, laws)
+
+    def prospect(
+        self, more: Whitened, levels: Sequence[float] = (0.0,), built: Sequence[Term] | None = None
+    ) -> Prospect:
+        """Return what further runs would make of the odds.
+
+        Args:
+            more: the runs, of which no residual is looked at.
+            levels: shares of a law's power by which it may be bent there, equally likely.
+            built: deviations within tolerance that recorded and further runs show; None for those of the recorded runs.
+        """
+        others, terms = self.laws[0].found.terms[:-1], [law.found.terms[-1] for law in self.laws]
+        beside, added = again(more, others), again(more, terms)
+        joined, *tried = (
+            [t.with_runs(x) for t, x in zip(a, b, strict=True)]
+            for a, b in ((others, beside), *(([t], [x]) for t, x in zip(terms, added, strict=True)))
+        )
+        if built is not None:
+            joined = [*built, *(t for t in joined if not isinstance(t.effect, AsBuilt))]
+        odds, apart = 0.0, 0.0
+        for law, own in zip(self.laws, added, strict=True):
+            samples = sum(n for (_, c), n in more.samples.items() if c in own.channels)
+            for level in levels:
+                both = self.data.with_runs(more, foretold(law.found, [*beside, own], more, level))
+                best = self._best([fit(both, [*joined, *t]) for t in tried])
+                after = best.pop(law.effect)
+                worth = fit(both, joined).total - after.total
+                far = np.array([0.0, *(unlikeness(f, after.total, worth) for f in best.values())])
+                judged = self.judged
+                library = with_bend(judged, law.found, after, both, worth) if level else judged.library
+                odds += law.odds / len(levels) * library * float(shares_of(far, in_force())[0])
+                behind = min((f.total - after.total for f in best.values()), default=0.0)
+                apart += law.odds / len(levels) * max(0.0, behind) / max(1, samples)
+        return Prospect(odds, apart)
+
+    def _best(self, fits: Sequence[Fit]) -> dict[int, Fit]:
+        """Return the best fit of each effect, of one fit for each law."""
+        ranked = sorted(zip(self.laws, fits, strict=True), key=lambda x: -x[1].total)
+        return {law.effect: f for law, f in ranked}
+
+
+def sharing(j: Judged) -> list[int]:
+    """Return the numbers of the candidates that share the odds of the library."""
+    return [k for k, p in enumerate(j.effects) if p >= LISTED * j.library]
+
+
+def _forms(data: Whitened, term: Term) -> list[Term]:
+    """Return a term and the other forms of its law; one of many stays as it is."""
+    shapes = [s for s in term.effect.shapes(data.views, term.site) if s != term.shape]
+    return [term, *(make_term(data, term.effect, term.site, s) for s in shapes if len(shapes) < FORMS)]
