@@ -16,6 +16,9 @@ from sher3_effects.operators import second_difference
 class FilteredRun:
     """Signals of a run on its ticks, (n, axes) in SI units; see `sher3_diagnosis.filter` for the residual grid.
 
+    A machine adds `stage_clock` (n,), s, and what was recorded besides: `effort`, `reference`, `command`, `echo` and
+    `load`, None where it was not.
+
     Attributes:
         period: of the ticks, s.
         motor: position of the motors' encoders, (n, axes).

@@ -73,50 +73,18 @@ class LawView(Protocol):
     """A run of one axis with the law that its command was stated to follow."""
 
     run: Any
-    """Signals of the run: see `RecordedRun`."""
+    """Signals of the run: see `sher3_effects.motion.FilteredRun`."""
 
     @property
     def stated(self) -> StatedLaw:
         """The stated law on what was recorded."""
 
 
-class RecordedRun(Protocol):
-    """Signals of one run on its ticks, (n, axes) in SI units; None where a signal was not recorded."""
-
-    period: float
-    stage_clock: Array
-    motor: Array
-    effort: Array | None
-    reference: Array | None
-    command: Array | None
-    echo: Array | None
-    load: Array | None
-
-    @property
-    def smooth(self) -> Array:
-        """Motor position after the low-pass of the residuals, (n, axes)."""
-
-    @property
-    def velocity(self) -> Array:
-        """Motor velocity from the smoothed position, (n, axes)."""
-
-    @property
-    def acceleration(self) -> Array:
-        """Second difference of the motor position, not smoothed, (n, axes)."""
-
-    @property
-    def grid(self) -> Any:
-        """Ticks of the residual grid, (g,)."""
-
-    def to_grid(self, x: Array) -> Array:
-        """Low-pass an (n, ...) signal and sample it on the residual grid -> (g, ...)."""
-
-
 class AxisView(Protocol):
     """A run of one or more axes with their nominal forces; all that an effect of an axis needs."""
 
     run: Any
-    """Signals of the run: see `RecordedRun`."""
+    """Signals of the run: see `sher3_effects.motion.FilteredRun`."""
     holds_at_rest: bool
     """Whether a dry friction holds any force up to its level in samples at rest."""
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from sher3_diagnosis.channel import Array, Channel
@@ -12,7 +13,7 @@ from sher3_sim.effect import PlantEffect, parameter
 
 from sher3_effects.operators import frozen_integral
 from sher3_effects.page import Page
-from sher3_effects.view import RecordedRun, RobotView
+from sher3_effects.view import RobotView
 
 
 class ForceSaturation(Page):
@@ -57,7 +58,7 @@ class ForceSaturation(Page):
         """Limits near a hard one, with a bend: it begins below."""
         return [{"limit": shape["limit"] * f, "knee": self.KNEE} for f in (0.85, 0.92, 1.0, 1.08)]
 
-    def _step(self, view: RobotView, run: RecordedRun, axis: int) -> Array:
+    def _step(self, view: RobotView, run: Any, axis: int) -> Array:
         """By how much the force steps with the demand at each tick, (n,)."""
         assert run.echo is not None
         return view.robot.actuators[axis].drive.kp * np.diff(run.echo[:, axis], append=run.echo[-1, axis])
