@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -209,10 +208,3 @@ def _tracker_rms(run: Run) -> float | None:
 def _recorder_drops(run: Run) -> dict[str, int]:
     record = run.records.get("sher3.recording", {})
     return {topic: int(parse_json(entry)["dropped"]) for topic, entry in record.items()}
-
-
-def analyse_bag(path: str | Path) -> Analysis:
-    """Read a bag as it is, damaged stamps and values included, and compute its figures."""
-    from sher3_bags.reading import read_run
-
-    return analyse(read_run(path, check=False))

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 import numpy as np
+from sher3_common.numbers.cross import skew
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.effect import Best, Shape, Signature
 
@@ -41,9 +42,7 @@ class SensorFrame(Page):
         turn = Rotation.from_rotvec([shape.get(name, 0.0) for name in ("rx", "ry", "rz")])
         wrench = view.wrench(int(shape["frame"]))
         wrench = np.hstack([turn.apply(wrench[:, :3]), turn.apply(wrench[:, 3:])])
-        columns = np.zeros((len(wrench), 6, 3))
-        for i, axis in enumerate(np.eye(3)):
-            columns[:, :3, i], columns[:, 3:, i] = np.cross(axis, wrench[:, :3]), np.cross(axis, wrench[:, 3:])
+        columns = -np.concatenate([skew(wrench[:, :3]), skew(wrench[:, 3:])], axis=1)
         channel = Channel(self.stage, site)
         return Signature({channel: columns}, {channel: wrench - view.wrench(0)})
 

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from sher3_common.numbers.cross import skew
 from sher3_description import Robot
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.effect import Best, Shape, Signature
@@ -43,8 +44,7 @@ class ToolGravity(Page):
             return Signature({Channel("sensing", site): unit[:, :, None]})
         columns = np.zeros((len(unit), 6, 4))
         columns[:, :3, 0] = unit[:, :3]
-        for a in range(3):
-            columns[:, 3:, 1 + a] = np.cross(np.eye(3)[a], unit[:, :3])
+        columns[:, 3:, 1:] = -skew(unit[:, :3])
         return Signature({Channel("sensing", site): columns})
 
     def tolerated(self, robot: Robot, site: str) -> Sequence[Tolerated]:
@@ -84,8 +84,7 @@ class SensorLoad(Page):
         """Return four columns: the weight per kilogram, and its moment per kilogram and metre along each axis."""
         columns = np.zeros((len(view.gravity), 6, 4))
         columns[:, :3, 0] = view.gravity
-        for i, axis in enumerate(np.eye(3)):
-            columns[:, 3:, 1 + i] = np.cross(axis, view.gravity)
+        columns[:, 3:, 1:] = -skew(view.gravity)
         return Signature({Channel(self.stage, site): columns})
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:

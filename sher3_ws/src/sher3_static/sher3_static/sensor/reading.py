@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.constants import g
 from scipy.spatial.transform import Rotation
+from sher3_common.numbers.cross import skew
 from sher3_diagnosis.channel import Array
 from sher3_machines.errors import MachineError
 from sher3_machines.intake.columns import pick
@@ -195,7 +196,6 @@ def load_in(frame: Frame, wrench: Array, turn: Array, further: Array) -> tuple[f
     gravity = frame.gravity(turn) @ further.T
     centred, force = gravity - gravity.mean(axis=0), wrench[:, :3] - wrench[:, :3].mean(axis=0)
     mass = max(float(np.sum(centred * force) / np.sum(centred**2)), 0.0)
-    rows = np.concatenate([np.cross(axis, centred)[:, :, None] for axis in np.eye(3)], axis=2)
     torque = wrench[:, 3:] - wrench[:, 3:].mean(axis=0)
-    moment = np.linalg.lstsq(rows.reshape(-1, 3), torque.ravel(), rcond=None)[0]
+    moment = np.linalg.lstsq(-skew(centred).reshape(-1, 3), torque.ravel(), rcond=None)[0]
     return float(np.sqrt(np.mean((force - mass * centred) ** 2))), mass, moment

@@ -77,8 +77,9 @@ class Losses:
         api = mujoco()
         data = api.MjData(self._model)
         passive, dry = np.empty_like(q), np.empty_like(q)
+        place, speed, growth, lost, rubbed = data.qpos, data.qvel, data.qacc, data.qfrc_passive, data.qfrc_constraint
         for i, (qi, vi, ai) in enumerate(zip(q, v, a, strict=True)):
-            data.qpos[self._places], data.qvel[self._rows], data.qacc[self._rows] = qi, vi, ai
+            place[self._places], speed[self._rows], growth[self._rows] = qi, vi, ai
             api.mj_inverse(self._model, data)
-            passive[i], dry[i] = data.qfrc_passive[self._rows], data.qfrc_constraint[self._rows]
+            passive[i], dry[i] = lost[self._rows], rubbed[self._rows]
         return passive, dry

@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
+from sher3_common.numbers.cross import cross, skew
 from sher3_diagnosis.channel import Array
 
 from sher3_chain.manipulator.rigid.tree import MATRIX, PARAMETERS, WORLD, Link, Tree
@@ -84,12 +85,12 @@ def _carried(link: Link, i: int, before: _Motion, q: Array, v: Array, a: Array) 
     turn = link.turn if link.slides else link.turn @ _turned(link.axis, q)
     place = link.place + (np.outer(q, link.turn @ link.axis) if link.slides else np.zeros((len(q), 3)))
     omega = before.rate
-    origin = before.acceleration + np.cross(before.growth, place) + np.cross(omega, np.cross(omega, place))
+    origin = before.acceleration + cross(before.growth, place) + cross(omega, cross(omega, place))
     turning = before.turning @ turn
-    sliding = (before.sliding + np.cross(before.turning, place[:, None])) @ turn
+    sliding = (before.sliding + cross(before.turning, place[:, None])) @ turn
     (sliding if link.slides else turning)[:, i] += link.axis
     rate, growth, acceleration = (_back(x, turn) for x in (omega, before.growth, origin))
-    beside = np.cross(rate, link.axis * v)
+    beside = cross(rate, link.axis * v)
     if link.slides:
         return _Motion(turning, sliding, rate, growth, acceleration + link.axis * a + 2.0 * beside)
     return _Motion(turning, sliding, rate + link.axis * v, growth + link.axis * a + beside, acceleration)
@@ -98,10 +99,10 @@ def _carried(link: Link, i: int, before: _Motion, q: Array, v: Array, a: Array) 
 def _wrenches(motion: _Motion) -> tuple[Array, Array]:
     """Force and moment about its origin, (n, 3, 10) each, that a body needs for each of its inertial parameters."""
     force, moment = (np.zeros((len(motion.rate), 3, PARAMETERS)) for _ in range(2))
-    spin = _skew(motion.rate)
+    spin = skew(motion.rate)
     force[:, :, 0] = motion.acceleration
-    force[:, :, 1:4] = _skew(motion.growth) + spin @ spin
-    moment[:, :, 1:4] = -_skew(motion.acceleration)
+    force[:, :, 1:4] = skew(motion.growth) + spin @ spin
+    moment[:, :, 1:4] = -skew(motion.acceleration)
     moment[:, :, 4:] = _spread(motion.growth) + spin @ _spread(motion.rate)
     return force, moment
 
@@ -116,17 +117,10 @@ def _spread(x: Array) -> Array:
 
 def _turned(axis: Array, angle: Array) -> Array:
     """Rotations (n, 3, 3) about a unit axis by angles (n,), by Rodrigues' formula."""
-    one = _skew(axis[None])[0]
+    one = skew(axis[None])[0]
     return np.eye(3) + np.sin(angle)[:, None, None] * one + (1.0 - np.cos(angle))[:, None, None] * (one @ one)
 
 
 def _back(x: Array, turn: Array) -> Array:
     """Vectors (n, 3) in the axes that a rotation (n, 3, 3) or (3, 3) turns to."""
     return (x[:, None] @ turn)[:, 0]
-
-
-def _skew(x: Array) -> Array:
-    """Matrix (n, 3, 3) that times y is the cross product of x (n, 3) and y."""
-    out = np.zeros((len(x), 3, 3))
-    out[:, 0, 1], out[:, 0, 2], out[:, 1, 2] = -x[:, 2], x[:, 1], -x[:, 0]
-    return out - out.transpose(0, 2, 1)
