@@ -33,12 +33,12 @@ def foretold(found: Fit, terms: Sequence[Term], more: Whitened, level: float) ->
     The law of the last of them is bent by a share `level` of its power.
     """
     out = [{c: np.zeros(len(y)) for c, y in seen.items()} for seen in more.target]
-    bends = {c: _bends(more, c, level) for c in set().union(*out)} if level else {}
+    bends = {c: _bends(more, c, level) for c in terms[-1].channels} if level else {}
     for i, term in enumerate(terms):
         for r, total in enumerate(out):
             for c in total:
                 own = term.adds(r, c, found.of(i))
-                total[c] = total[c] + (own * bends[c][r] if level and term is terms[-1] else own)
+                total[c] = total[c] + (own * bends[c][r] if term is terms[-1] and c in bends else own)
     return out
 
 

@@ -15,7 +15,7 @@ import numpy as np
 from sher3_diagnosis.attribute.candidates import possible
 from sher3_diagnosis.attribute.rivals import unlikeness
 from sher3_diagnosis.finding import Finding, Judged
-from sher3_diagnosis.fit.fitting import Fit, Term, fit, make_term
+from sher3_diagnosis.fit.fitting import Fit, Term, connected, fit, make_term
 from sher3_diagnosis.fit.term import again
 from sher3_diagnosis.fit.tolerance import AsBuilt
 from sher3_diagnosis.fit.whitened import Whitened
@@ -67,14 +67,18 @@ class Rivals:
 
     @classmethod
     def of(cls, finding: Finding, judged: Judged) -> Rivals:
-        """Return those of a cause; the finding has all causes. Forms of one law share its odds as effects do."""
+        """Return those of a cause; the finding has all causes. Forms of one law share its odds as effects do.
+
+        What acts elsewhere is left out: it is the same whichever law is at work.
+        """
         index, data, laws = judged.item.index, finding.evidence.data, []
         assert index is not None
-        others = finding.attribution.fit.others(index)
-        worth = fit(data, others).total - finding.attribution.fit.total
-        whole = sum(judged.effects[k] for k in sharing(judged))
-        for k in sharing(judged):
-            own, *other = (fit(data, [*others, t]) for t in _forms(data, term_of(finding, judged, k)))
+        rivals = {k: term_of(finding, judged, k) for k in sharing(judged)}
+        others = _beside(finding.attribution.fit.others(index), list(rivals.values()))
+        worth = fit(data, others).total - fit(data, [*others, rivals[min(rivals)]]).total
+        whole = sum(judged.effects[k] for k in rivals)
+        for k, term in rivals.items():
+            own, *other = (fit(data, [*others, t]) for t in _forms(data, term))
             forms = [own, *(f for f in other if possible(f))]
             far = np.array([unlikeness(f, own.total, worth) for f in forms])
             odds = shares_of(far, in_force()) * judged.effects[k] / whole
@@ -98,7 +102,8 @@ class Rivals:
             for a, b in ((others, beside), *(([t], [x]) for t, x in zip(terms, added, strict=True)))
         )
         if built is not None:
-            joined = [*built, *(t for t in joined if not isinstance(t.effect, AsBuilt))]
+            causes = [t for t in joined if not isinstance(t.effect, AsBuilt)]
+            joined = [*_beside(built, [*causes, *(t for x in tried for t in x)]), *causes]
         odds, apart = 0.0, 0.0
         for law, own in zip(self.laws, added, strict=True):
             samples = sum(n for (_, c), n in more.samples.items() if c in own.channels)
@@ -124,6 +129,13 @@ class Rivals:
 def sharing(j: Judged) -> list[int]:
     """Return the numbers of the candidates that share the odds of the library."""
     return [k for k, p in enumerate(j.effects) if p >= LISTED * j.library]
+
+
+def _beside(terms: Sequence[Term], laws: Sequence[Term]) -> list[Term]:
+    """Return the terms that share channels with some laws, or with a term that does."""
+    groups = connected([*terms, *laws])
+    near = {i for group in groups for i in group if any(k >= len(terms) for k in group)}
+    return [t for i, t in enumerate(terms) if i in near]
 
 
 def _forms(data: Whitened, term: Term) -> list[Term]:
