@@ -2,7 +2,6 @@
 
 from io import StringIO
 
-import pytest
 from rich.console import Console
 from sher3_challenge.score.case import CaseScore
 from sher3_challenge.score.outcome import Outcome
@@ -42,11 +41,3 @@ def test_misses_are_wrong_answers_from_three_floors_on():
 def test_confusions_count_each_pair():
     text = printed(confusion_table("status", {"no_gap": {"no_gap": 3, "attributed": 1}}))
     assert "3" in text and "1" in text and "attributed" in text
-
-
-def test_a_rate_is_of_what_is_known_and_answers_have_an_interval():
-    """Of three known answers two are yes: 0.67, by Wilson's formula between 0.21 and 0.94."""
-    found = Rate.of([True, None, False, True])
-    assert (found.value, found.n) == (pytest.approx(2 / 3), 3)
-    assert (found.low, found.high) == (pytest.approx(0.2077, abs=1e-4), pytest.approx(0.9385, abs=1e-4))
-    assert Rate.of([1.5, None, 2.5]) == Rate(2.0, 2) and Rate.of([None]) == Rate(None, 0)

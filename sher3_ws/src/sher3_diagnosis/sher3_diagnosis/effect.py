@@ -128,6 +128,7 @@ class Effect:
         plain: whether it is one of the laws that any joint may have: all of them are fitted at once before a richer one
             is looked for.
         dry: whether it is a friction that holds an axis at rest.
+        amount: value of a shape that says how much of the effect there is; "" where a coefficient does.
         slow: whether its law lives at low speed, so that samples in quick motion tell nothing of its parameters.
         unseen: whether it is behind the only encoder of an axis, where the effort alone shows it.
         about: values of a shape that the fit finds again by itself, since its columns are linear about them; no more
@@ -171,6 +172,7 @@ class Effect:
     plain: ClassVar[bool] = False
     of_recorder: ClassVar[bool] = False
     dry: ClassVar[bool] = False
+    amount: ClassVar[str] = ""
     slow: ClassVar[bool] = False
     unseen: ClassVar[bool] = False
     about: ClassVar[tuple[str, ...]] = ()

@@ -130,6 +130,10 @@ class Evidence:
         unit = self.units[channel]
         return unit if component < TURNS else ROTARY[unit]
 
+    def own_unit(self, unit: str, site: str) -> str:
+        """Return the unit of a parameter at a site where forces were not recorded as such; default the SI unit."""
+        return unit
+
     def component(self, channel: Channel, component: int) -> str | None:
         """Return the name of a component: `x` to `rz` of a pose, `fx` to `tz` of a wrench; None for a single one."""
         residual = next(r[channel] for r in self.data.residuals if channel in r)

@@ -27,6 +27,7 @@ from sher3_diagnosis.judge.meaning import without_empty, without_open_sizes
 from sher3_diagnosis.localise.gaps import localise
 from sher3_diagnosis.machine import Diagnosis, Machine
 from sher3_diagnosis.quantify.closure import residual_after
+from sher3_diagnosis.quantify.least_seen import would_have_shown
 from sher3_diagnosis.quantify.motion import in_motion
 from sher3_diagnosis.quantify.polish import polished
 
@@ -99,7 +100,8 @@ def find(machine: Machine[R, E], evidence: E, without: Collection[str], say: Say
         refined, causes = machine.refine(evidence, causes_of(evidence, attribution), attribution)
     causes = without_open_sizes(attribution, causes)
     finding = Finding(refined, gaps, attribution, causes, remains(attribution.fit))
-    return replace(finding, notes=machine.remarks(finding))
+    power = would_have_shown(evidence, candidates.effects, significant) if machine.policy.absences else []
+    return replace(finding, notes=[*machine.remarks(finding), *power])
 
 
 def nominal(evidence: Evidence) -> dict[Channel, dict[int, Array]]:

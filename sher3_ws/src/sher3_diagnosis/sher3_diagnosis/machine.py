@@ -65,11 +65,14 @@ class Policy:
             robots that set the weights.
         carried: an effect whose size may be zero stays in the fit without a name. For machines of which every part has
             a small error of its own; otherwise it is left out.
+        absences: a place without a gap says from which size on each plain law would have shown. For machines on which
+            such sizes were measured to be seen.
     """
 
     swept: bool = False
     own_level: bool = False
     carried: bool = False
+    absences: bool = False
 
 
 class Machine(ABC, Generic[R, E]):

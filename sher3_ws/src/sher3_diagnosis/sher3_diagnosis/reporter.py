@@ -107,6 +107,7 @@ class Reporter(Generic[E]):
         places: in the order they are listed; places not named here follow by name.
         every_stage: list the stages of which nothing was recorded too.
         simulated: whether `sher3 gap apply` and `sher3 gap experiment` know the machine's simulator.
+        formulas: whether `sher3 gap discover` finds a formula for what the library lacks.
         target: options by which `sher3 gap export` writes the causes into the machine's model.
         abscissa: label of what pictures run over.
         end: where the closure of the machine run from end to end is read.
@@ -118,6 +119,7 @@ class Reporter(Generic[E]):
     places: Sequence[str] = ()
     every_stage: bool = False
     simulated: bool = False
+    formulas: bool = True
     target: str = TO_YAML
     abscissa: str = "time [s]"
     end: str = "at the tip"

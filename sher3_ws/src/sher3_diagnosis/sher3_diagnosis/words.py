@@ -13,8 +13,10 @@ ROUNDS_UP = 0.9995
 """Share of a prefix from which a number of three digits is printed with it: 999.5 µm reads 1 mm."""
 NOTHING = 1e-14
 """Size below which a number is what rounding leaves of zero; it is printed as 0."""
-WHOLE = 99.95
-"""Number from which three digits leave none behind the point."""
+DIGITS = (3, 4, 5, 6)
+"""Digits of the ends of an interval that are tried until the ends differ."""
+WHOLE = 999.5
+"""Number from which three digits would need a power of ten."""
 TENTHS = 100.0
 """Gap over floor from which its tenths are not told."""
 BEYOND = 1000.0
@@ -42,13 +44,13 @@ def place(site: str) -> str:
     return "all axes" if site == "all" else site.replace("_", " ")
 
 
-def quantity(value: float | None, unit: str) -> str:
-    """Return a number with three digits, an SI prefix and its unit; a dash for None and for what is not finite."""
+def quantity(value: float | None, unit: str, digits: int = 3) -> str:
+    """Return a number with some digits, an SI prefix and its unit; a dash for None and for what is not finite."""
     if value is None or not math.isfinite(value):
         return "–"
     shown = unit.replace("*", "·")
     if unit in _PLAIN or unit.split("/", 1)[0] in _COUNTED:
-        return f"{value:.3g}" + ("" if unit in ("1", "") else f" {shown}")
+        return f"{value:.{digits}g}" + ("" if unit in ("1", "") else f" {shown}")
     if unit.startswith("kg"):
         value, shown = value * 1e3, shown[1:]
     size = abs(value)
@@ -56,8 +58,8 @@ def quantity(value: float | None, unit: str) -> str:
         return f"0 {shown}"
     scale, prefix = next(((s, p) for s, p in _PREFIXES if size >= ROUNDS_UP * s), (1.0, ""))
     number = value / scale
-    digits = f"{number:.0f}" if abs(number) >= WHOLE else f"{number:.3g}"
-    return f"{digits} {prefix}{shown}"
+    text = f"{number:.0f}" if abs(number) >= WHOLE else f"{number:.{digits}g}"
+    return f"{text} {prefix}{shown}"
 
 
 def rounded(value: float, unit: str) -> str:
@@ -66,10 +68,12 @@ def rounded(value: float, unit: str) -> str:
 
 
 def range_text(low: float | None, high: float | None, unit: str) -> str:
-    """Return an interval, or why there is none."""
+    """Return an interval with digits enough to tell its ends apart, or why there is none."""
     if low is None or high is None:
         return "too few runs"
-    return f"{quantity(low, unit)} … {quantity(high, unit)}"
+    ends = [(quantity(low, unit, digits), quantity(high, unit, digits)) for digits in DIGITS]
+    first, last = next((pair for pair in ends if pair[0] != pair[1]), ends[0])
+    return f"{first} … {last}"
 
 
 def share(value: float | None) -> str:

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from sher3_diagnosis.verdict import Cause, Identified, Parameter
+from sher3_diagnosis.words import words
 from sher3_effects import pages
 from sher3_effects.page import CONSTANTS
 
@@ -25,7 +26,7 @@ class Change:
 
     Attributes:
         joint: name of the joint, or of the place of the cause.
-        constant: of `sher3_effects.page.CONSTANTS`.
+        constant: of `sher3_effects.page.CONSTANTS`; of a cause that sets none the parameter's own name.
         value, low, high: what it is, and its interval, SI units; None where the verdict has no interval.
         unit: of the value.
         effect: the cause it comes from, or `IDENTIFIED`.
@@ -46,7 +47,8 @@ class Change:
 
     def __str__(self) -> str:
         between = "" if self.low is None or self.high is None else f" ({self.low:.4g} to {self.high:.4g})"
-        return f"{self.effect} on {self.joint}: {CONSTANTS[self.constant]} {self.value:.6g} {self.unit}{between}"
+        what = CONSTANTS.get(self.constant, words(self.constant).lower())
+        return f"{self.effect} on {self.joint}: {what} {self.value:.6g} {self.unit}{between}"
 
 
 @dataclass(frozen=True)
@@ -72,7 +74,7 @@ class Untold:
 
 
 def changes_of(causes: Sequence[Cause], joints: Mapping[str, str] | None = None) -> tuple[list[Change], list[Untold]]:
-    """Return the constants that causes set, and the causes that are no constant of a joint.
+    """Return the numbers that causes set, constants of a joint or their own, and the causes of which none can be used.
 
     Args:
         causes: of a verdict.
@@ -90,10 +92,8 @@ def changes_of(causes: Sequence[Cause], joints: Mapping[str, str] | None = None)
             continue
         joint = (joints or {}).get(cause.actuator, cause.actuator)
         known = constants_of(cause)
-        found = [_change(cause.effect, joint, known[name], p) for name, p in cause.parameters.items() if name in known]
-        changes += found
-        if not found:
-            untold.append(Untold(cause.effect, joint, "", None, "no constant of a joint: no target has a field for it"))
+        known = known if known.keys() & cause.parameters.keys() else {name: name for name in cause.parameters}
+        changes += [_change(cause.effect, joint, known[n], p) for n, p in cause.parameters.items() if n in known]
     return changes, untold
 
 

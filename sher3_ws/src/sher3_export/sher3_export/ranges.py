@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from sher3_common import dump_yaml
 from sher3_diagnosis.verdict import Cause, Identified, Parameter, Verdict
+from sher3_diagnosis.words import range_text, share, words
 
 from sher3_export.changes import constants_of
 
@@ -58,6 +60,18 @@ class Ranges:
         """Probability of each world."""
         known = list(self.shares) or [1.0] * len(self.worlds)
         return [share / sum(known) for share in known]
+
+    def told(self) -> list[str]:
+        """Return a line for each number of each set of causes, with its range; sets parted by their odds."""
+        out = []
+        for world, odds in zip(self.worlds, self.probabilities, strict=True):
+            out += [f"one of {len(self.worlds)} sets, {share(odds)}:"] if len(self.worlds) > 1 else []
+            for cause in world:
+                for name, found in _ranges(cause.parameters, self.width).items():
+                    low, high = found["range"]
+                    what = f"{cause.effect} on {cause.actuator}: {words(name).lower()}"
+                    out.append(f"{what} {range_text(low, high, found['unit'])}")
+        return out
 
     def text(self) -> str:
         """Return the ranges as YAML, `schema: sher3.ranges/1`."""
@@ -143,7 +157,7 @@ def _entry(cause: Cause, width: float) -> dict[str, object]:
     return {"effect": cause.effect, "joint": cause.actuator, **_ranges(named, width)}
 
 
-def _ranges(each: Mapping[str, Parameter], width: float) -> dict[str, object]:
+def _ranges(each: Mapping[str, Parameter], width: float) -> dict[str, dict[str, Any]]:
     return {
         name: {
             "range": [float(p.value + width * (end - p.value)) for end in interval(p)],

@@ -9,6 +9,7 @@ from xml.etree.ElementTree import Element
 
 from sher3_chain.manipulator.description import BEHIND
 from sher3_diagnosis.verdict import Cause, Identified, Verdict
+from sher3_effects.page import CONSTANTS
 
 from sher3_export.changes import Change, Untold, changes_of, identified_changes
 from sher3_export.errors import ExportError
@@ -102,10 +103,12 @@ def put(
     for change in changes:
         travel = (motors or {}).get(change.joint)
         if reason := writer.apply(change) if travel is None else writer.apply_at_motor(change, travel):
-            untold.append(Untold(change.effect, change.joint, change.constant, change.value, reason))
+            known = change.constant in CONSTANTS
+            constant, value = (change.constant, change.value) if known else ("", None)
+            untold.append(Untold(change.effect, change.joint, constant, value, reason))
         else:
             applied.append(change)
-    return Exported("", applied, untold), writer.text
+    return Exported("", applied, list(dict.fromkeys(untold))), writer.text
 
 
 def opened(kind: type[Target], model: Path | Element | None) -> Target:

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 import yaml
 from sher3_export import ExportError
-from sher3_export.excitation.design import Excitation, designed
+from sher3_export.excitation.design import Excitation, designed, is_driven
 from sher3_export.excitation.forms import as_csv, as_trajectory, save
 from sher3_export.excitation.fourier import Box, Fourier, drawn, within
 
@@ -70,6 +70,5 @@ def test_an_arm_gets_a_better_motion_than_most_within_what_it_did(tmp_path):
     assert (np.abs(pull).max(axis=0) <= 1.02 * np.abs(a).max(axis=0)).all()
 
 
-def test_another_kind_of_machine_is_told_what_to_do():
-    with pytest.raises(ExportError, match="axes and arms"):
-        designed(object(), [])
+def test_only_what_is_driven_is_given_a_motion(tmp_path):
+    assert is_driven(lifts.machine(tmp_path / "lift.urdf")) and not is_driven(object())

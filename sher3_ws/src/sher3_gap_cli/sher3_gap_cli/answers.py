@@ -32,6 +32,11 @@ class Task:
     folder: str = ""
     costs: Costs = DEFAULT
 
+    @property
+    def options(self) -> str:
+        """What a search for a formula repeats of how the case was diagnosed."""
+        return f" --without {','.join(self.without)}" if self.without else ""
+
     def absolute(self) -> Task:
         """Return it with paths that do not depend on the working folder."""
         robot = None if self.robot is None else self.robot.resolve()
@@ -60,7 +65,7 @@ def answer(task: Task, say: Say = silent) -> Answer:
     rests = {e.id: e.leaves_out for e in found.machine.library() if e.leaves_out}
     reporter = found.machine.reporter()
     table, case = reporter.table(found), str(task.case)
-    lines = five_lines(found.verdict, reporter, rests, table, case, task.folder)
+    lines = five_lines(found.verdict, reporter, rests, table, case, task.folder, task.options)
     if not task.report:
         return Answer(task, found.verdict, lines)
     say("writing the report")
@@ -70,7 +75,7 @@ def answer(task: Task, say: Say = silent) -> Answer:
 def _page(found: Diagnosis[Any], task: Task) -> str:
     from sher3_diagnosis.report.page import render
 
-    return render(found, task.case.resolve().name, folder=task.folder, case=str(task.case))
+    return render(found, task.case.resolve().name, folder=task.folder, case=str(task.case), options=task.options)
 
 
 def diagnosed(task: Task, say: Say) -> Diagnosis[Any]:

@@ -8,7 +8,7 @@ import arms
 import lifts
 import numpy as np
 import yaml
-from clean_records import cell, slide
+from clean_records import cell, circle, late_servo, pendulum, slide
 from scipy.constants import g
 from scipy.spatial.transform import Rotation
 
@@ -119,8 +119,49 @@ def weights(folder):
     return described, {**read, "weight": np.linalg.norm(force, axis=1), "direction": along, "lever": lever}
 
 
-TABLES = (load_cell, force_sensor, weights, positioning, arm, target, cable)
-KINDS = {f.__name__: f for f in (axes, servo, manipulator, *TABLES)}
+def two_encoders(folder):
+    """A servo that lags, with play between its encoders."""
+    described, record = late_servo()
+    return described, {name: x[:4000:2] for name, x in record.columns.items()}
+
+
+def let_go(folder):
+    """A pendulum that dry friction brings to rest."""
+    described, record = pendulum()
+    return described, record.columns
+
+
+def ring(folder):
+    """A circle of two axes that are out of square."""
+    described, record = circle()
+    return described, record.columns
+
+
+TABLES = (load_cell, force_sensor, weights, positioning, arm, target, cable, ring)
+KINDS = {f.__name__: f for f in (axes, servo, two_encoders, let_go, manipulator, *TABLES)}
+
+
+TELLING = {
+    "f": "force",
+    "q": "quat",
+    ("t", "force_sensor"): "torque",
+    ("force", "load_cell"): "applied force",
+    "read": "reading",
+}
+"""Column of a case -> name that a person would give it, of any kind or of one."""
+
+
+def table_of(kind: str, folder: Path) -> tuple[Path, dict]:
+    """Write the columns of a kind as a CSV as a person would; return the file, and the description it stands for."""
+    described, columns = KINDS[kind](folder)
+    flat = {}
+    for name, x in columns.items():
+        told = TELLING.get((name, kind), TELLING.get(name, name))
+        rows = np.asarray(x).reshape(len(x), -1)
+        flat |= {f"{told}_{i}" if rows.shape[1] > 1 else told: rows[:, i] for i in range(rows.shape[1])}
+    file = folder / "table.csv"
+    np.savetxt(file, np.stack(list(flat.values()), 1), "%.9g", ",", header=",".join(flat), comments="")
+    return file, described
 
 
 def written(kind: str, folder: Path) -> tuple[Path, Path]:

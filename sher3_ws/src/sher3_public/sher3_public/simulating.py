@@ -12,7 +12,7 @@ from sher3_diagnosis.verdict import Verdict
 from sher3_export.check.check import bench_on
 from sher3_export.check.engine import copied, windows
 from sher3_export.check.model_of import model_of, model_of_text
-from sher3_export.check.recorded import Recorded
+from sher3_export.check.recorded import Recorded, recorded
 from sher3_export.writing import export
 
 from sher3_public.cases import Case
@@ -95,6 +95,7 @@ def replays(verdict: Verdict, case: Case) -> Replays:
 
 def _root(case: Case) -> Any:
     if case.source is None:
+        recorded(case.machine, [], {}, False)  # refuses another kind of machine
         return model_of(case.machine.gather(case.runs))
     if case.source.text is None:
         remedy = "give the model as a path, a text or an MjSpec"

@@ -41,7 +41,7 @@ class TableKind(Kind[D, Readings]):
     stored: tuple[str, ...] = ()
     written_for: tuple[str, ...]
     words: Words
-    policy = Policy(own_level=True)
+    policy = Policy(own_level=True, absences=True)
     plan = SearchPlan(causes=6, down_to_floor=True)
 
     def read(self, name: str, tables: Tables, description: D) -> Readings:

@@ -38,6 +38,8 @@ class Words:
 class TableReporter(Reporter[TableEvidence]):
     """The part of any table in a report."""
 
+    formulas = False
+
     def __init__(self, words: Words) -> None:
         self.words, self.flows = words, {**FLOWS, **words.flows}
         self.abscissa, self.held_out, self.end = words.row, words.parts, words.end

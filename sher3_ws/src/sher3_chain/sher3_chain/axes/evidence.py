@@ -20,6 +20,7 @@ from sher3_chain.axes.view import AxisView
 from sher3_chain.chain.evidence import ChainEvidence, in_blocks
 from sher3_chain.constants import ZERO, constants
 from sher3_chain.joint.description import Axis
+from sher3_chain.joint.own_unit import renamed
 from sher3_chain.joint.record import AxesRun
 from sher3_chain.readings.level import at_a_level, level_note, off, off_note
 from sher3_chain.readings.signals import AxisSignals, signals_of
@@ -47,6 +48,10 @@ class AxisEvidence(ChainEvidence):
     mass_interval: tuple[float, float] | None = None
     untold: str = ""
     notes: Sequence[str] = ()
+
+    def own_unit(self, unit: str, site: str) -> str:
+        """Return the unit of a parameter, with forces as they were recorded."""
+        return renamed(unit, self.axis.own_unit) if self.axis.own_unit else unit
 
 
 def gather_axis(runs: Sequence[AxesRun], axis: Axis, repeats: bool) -> AxisEvidence:

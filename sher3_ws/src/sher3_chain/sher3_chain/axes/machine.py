@@ -29,7 +29,6 @@ from sher3_chain.axes.command.law import LAW, is_law, law_of_axis
 from sher3_chain.axes.evidence import AxisEvidence, gather_axis, levels_of
 from sher3_chain.axes.foreseen import foreseen
 from sher3_chain.axes.limits import LIMIT, limit_finding
-from sher3_chain.axes.power import least_seen
 from sher3_chain.axes.replay import replay
 from sher3_chain.chain.machine import Chain
 from sher3_chain.joint.bounds import within_bounds
@@ -52,7 +51,7 @@ class Axes(Chain[AxisEvidence]):
     """Axes that move independently of each other."""
 
     described: AxesDescription
-    policy = Policy(swept=True, own_level=True)
+    policy = Policy(swept=True, own_level=True, absences=True)
 
     def library(self) -> Sequence[Effect]:
         """Return the pages for these kinds of axes, and that of the limit, which is read off without a fit."""
@@ -124,7 +123,6 @@ class Axes(Chain[AxisEvidence]):
         changes = change_notes(finding.evidence, finding.attribution, self.parted(finding.evidence))
         untold = finding.evidence.untold
         changes += finding.evidence.notes
-        nothing_found = not finding.significant and bool(finding.evidence.views)
         own = finding.evidence.axis.own_unit
         changes += [own_unit_note(finding.evidence.axis.name, own)] if own else []
         changes += [f"{untold}: its force balance is not judged"] if untold else []
@@ -135,7 +133,6 @@ class Axes(Chain[AxisEvidence]):
             *blind_spots(finding),
             *carried_by_others(finding, self.described.axes),
             *([] if finding.significant else unseen(finding.evidence)),
-            *(least_seen(finding.evidence, self.effects(finding.evidence)) if nothing_found else []),
             *([again.note] if again else []),
         ]
 

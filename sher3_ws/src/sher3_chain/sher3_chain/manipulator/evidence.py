@@ -16,7 +16,7 @@ from sher3_machines.thresholds import BLOCKS
 from sher3_chain.chain.evidence import ChainEvidence, in_blocks
 from sher3_chain.constants import ZERO, constants
 from sher3_chain.joint.conditions import conditions_of, reference_runs
-from sher3_chain.joint.own_unit import RECORDED
+from sher3_chain.joint.own_unit import RECORDED, renamed
 from sher3_chain.joint.record import AxesRun
 from sher3_chain.manipulator.description import PER_RUN, Joint, ManipulatorDescription
 from sher3_chain.manipulator.encoders import links_of
@@ -63,6 +63,10 @@ class ArmMotionEvidence(ChainEvidence):
     against: Sequence[str] = ()
     inertias: Inertias | None = None
     gravity: Array | None = None
+
+    def own_unit(self, unit: str, site: str) -> str:
+        """Return the unit of a parameter, with forces as they were recorded where no gain is stated."""
+        return renamed(unit, RECORDED) if site in self.shares else unit
 
 
 def channel_of(joint: str) -> Channel:

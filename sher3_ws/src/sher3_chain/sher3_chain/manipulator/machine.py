@@ -64,7 +64,7 @@ class Manipulator(Chain[ArmMotionEvidence]):
 
     described: ManipulatorDescription
     model: ArmModel
-    policy = Policy(swept=True, own_level=True)
+    policy = Policy(swept=True, own_level=True, absences=True)
 
     def library(self) -> Sequence[Effect]:
         """Return the pages of an axis and those of a joint of an arm, and those of a servo's law."""

@@ -21,6 +21,7 @@ from sher3_diagnosis.fit.fitting import Fit, Term, fit, make_term
 from sher3_diagnosis.fit.term import again
 from sher3_diagnosis.fit.whitened import Whitened
 from sher3_diagnosis.thresholds import NEEDED, PARSIMONY, RIVAL
+from sher3_diagnosis.words import lower, place, quantity
 
 from sher3_chain.joint.conditions import Condition
 from sher3_chain.thresholds import CHANGES
@@ -217,11 +218,12 @@ def change_notes(
         attribution: of the causes and changes.
         conditions: each with the identities of the views of its runs.
     """
-    out = []
+    out, sites = [], {c.actuator for c in evidence.channels}
+    head = f"{place(next(iter(sites)))}: " if len(sites) == 1 else ""
     for condition, views in conditions:
         of = [i for i, t in enumerate(attribution.fit.terms) if t.effect.condition == str(condition)]
-        said = [_in_words(attribution.fit, i) for i in of] or [_unchanged(evidence, attribution, views)]
-        out.append(f"{condition} against {condition.reference}, all else held common: {'; '.join(said)}")
+        said = [_in_words(evidence, attribution.fit, i) for i in of] or [_unchanged(evidence, attribution, views)]
+        out.append(f"{head}{condition} against {condition.reference}, all else held common: {'; '.join(said)}")
     return out
 
 
@@ -257,12 +259,20 @@ def _least_change(evidence: Evidence, found: Fit, index: int, views: frozenset[i
     name = next((n for n in moved if moved[n] != zero[n]), None)
     if name is None:
         return ""
-    unit = term.effect.unit(name, term.site, term.site in evidence.rotary)
-    size = f"{abs(moved[name] - zero[name]):.2g}" + (f" {unit}" if unit != "1" else "")
-    return f"{term.effect.id} on {term.site}, {name} by {size}"
+    size = float(f"{abs(moved[name] - zero[name]):.2g}")
+    return f"{lower(term.effect.id)} on {place(term.site)}, {name} by {_told(evidence, term, name, size)}"
 
 
-def _in_words(found: Fit, index: int) -> str:
+def _in_words(evidence: Evidence, found: Fit, index: int) -> str:
     term = found.terms[index]
     values = term.effect.parameters(term.shape, found.of(index))
-    return f"{term.effect.id} on {term.site}: " + ", ".join(f"{n} {x:+.3g}" for n, x in values.items())
+    fitted = [n for n in values if n not in term.shape] or list(values)
+    sizes = [f"{n.replace('_', ' ')} {'+' * (values[n] > 0.0)}{_told(evidence, term, n, values[n])}" for n in fitted]
+    return f"{lower(term.effect.id)} on {place(term.site)}: {', '.join(sizes)}"
+
+
+def _told(evidence: Evidence, term: Term, name: str, value: float) -> str:
+    """Return a parameter with its unit."""
+    return quantity(
+        value, evidence.own_unit(term.effect.unit(name, term.site, term.site in evidence.rotary), term.site)
+    )

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from causes_at import caused
 from lifts import machine, motion, needed, run_of
-from sher3_chain.manipulator.causes.confounding import confounded, confounded_in, known_weights
+from sher3_chain.manipulator.causes.confounding import beyond_motion, confounded, confounded_in
 
 
 def test_columns_that_nearly_cancel_are_named():
@@ -38,5 +38,5 @@ def test_gain_against_weight_asks_for_a_known_weight_and_friction_does_not():
         caused("torque_constant", "scale", "A5", "relative", 0.45, "1", ["gravity_load", "stribeck_friction"]),
         caused("coulomb_friction", "friction", "A4", "force", 8.0, "N*m", ["gear_loss"]),
     ]
-    (told,) = known_weights(causes)
+    (told,) = beyond_motion(causes)
     assert told.startswith("no motion tells torque constant and gravity load on A5 apart, a known weight does")

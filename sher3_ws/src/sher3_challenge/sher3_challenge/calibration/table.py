@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from sher3_common.numbers.shares import wilson
 
 from sher3_challenge.calibration.held_out import Judgement
-from sher3_challenge.score.outcome import CLEAR
 from sher3_challenge.score.rates import Rate
 from sher3_challenge.score.reliability import calibration_error
-from sher3_challenge.score.tables import aim
 
+CLEAR = 3.0
+"""Gap over floor from which a case counts; exact stages always do."""
 STATUSES = ("no_gap", "attributed", "under_excited", "outside_library")
 
 Question = Callable[[Judgement], bool | None]
@@ -31,34 +34,54 @@ def rates(judgements: Sequence[Judgement]) -> dict[str, Rate]:
     return {
         "balanced": Rate(sum(seen) / len(seen) if seen else None, len(whole)),
         **{f"said {s}": r for s, r in shares.items()},
-        "rightly named, called outside": Rate.of(j.said == "outside_library" for j in whole if j.rightly_named),
+        "rightly named, called outside": _rate([j.said == "outside_library" for j in whole if j.rightly_named]),
         "outside blamed": _share(whole, "outside_library", lambda j: j.said == "attributed"),
-        "withheld abstained": Rate.of(j.said == "outside_library" for j in withheld),
-        "withheld blamed": Rate.of(j.said in ("attributed", "under_excited") for j in withheld),
+        "withheld abstained": _rate([j.said == "outside_library" for j in withheld]),
+        "withheld blamed": _rate([j.said in ("attributed", "under_excited") for j in withheld]),
         "withheld, same data": Rate(None, sum(j.excused for j in kept)),
-        "top1": Rate.of(j.first_right for j in whole),
-        "in the set": Rate.of(j.in_set for j in whole),
-        "set size": Rate.of(j.set_size for j in whole),
+        "top1": _rate([j.first_right for j in whole if j.first_right is not None]),
+        "in the set": _rate([j.in_set for j in whole if j.in_set is not None]),
+        "set size": _mean([j.set_size for j in whole if j.set_size is not None]),
         "calibration error": Rate(calibration_error(stated) if stated else None, len(stated)),
     }
 
 
 def _share(judgements: Sequence[Judgement], status: str, ask: Question) -> Rate:
-    return Rate.of(ask(j) for j in judgements if j.seen.truth["status"] == status)
+    return _rate([ask(j) for j in judgements if j.seen.truth["status"] == status])
+
+
+def _rate(answers: Sequence[bool | None]) -> Rate:
+    known = [bool(a) for a in answers if a is not None]
+    if not known:
+        return Rate(None, 0)
+    share = sum(known) / len(known)
+    return Rate(share, len(known), *wilson(share, len(known)))
+
+
+def _mean(values: Sequence[float]) -> Rate:
+    return Rate(sum(values) / len(values), len(values)) if values else Rate(None, 0)
+
+
+@dataclass(frozen=True)
+class Target:
+    """What a rate is held to."""
+
+    sign: str
+    limit: float
 
 
 TARGETS = {
-    "balanced": (">=", 0.90),
-    "rightly named, called outside": ("<=", 0.03),
-    "said outside_library": (">=", 0.90),
-    "outside blamed": ("<=", 0.03),
-    "withheld abstained": (">=", 0.85),
-    "withheld blamed": ("<=", 0.05),
-    "said no_gap": (">=", 1.0),
-    "top1": (">=", 0.93),
-    "in the set": (">=", 0.97),
-    "set size": ("<=", 1.3),
-    "calibration error": ("<=", 0.05),
+    "balanced": Target(">=", 0.90),
+    "rightly named, called outside": Target("<=", 0.03),
+    "said outside_library": Target(">=", 0.90),
+    "outside blamed": Target("<=", 0.03),
+    "withheld abstained": Target(">=", 0.85),
+    "withheld blamed": Target("<=", 0.05),
+    "said no_gap": Target(">=", 1.0),
+    "top1": Target(">=", 0.93),
+    "in the set": Target(">=", 0.97),
+    "set size": Target("<=", 1.3),
+    "calibration error": Target("<=", 0.05),
 }
 
 
@@ -67,7 +90,9 @@ def written(columns: dict[str, dict[str, Rate]]) -> str:
     names = list(columns)
     lines = [f"| rate | target | {' | '.join(names)} |", "|---" * (len(names) + 2) + "|"]
     for rate in next(iter(columns.values())):
-        lines.append(f"| {rate} | {aim(TARGETS, rate)} | {' | '.join(_cell(columns[n][rate]) for n in names)} |")
+        target = TARGETS.get(rate)
+        aim = f"{target.sign} {target.limit:g}" if target else ""
+        lines.append(f"| {rate} | {aim} | {' | '.join(_cell(columns[n][rate]) for n in names)} |")
     return "\n".join(lines)
 
 

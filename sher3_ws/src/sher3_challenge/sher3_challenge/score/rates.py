@@ -30,16 +30,6 @@ class Rate:
     low: float | None = None
     high: float | None = None
 
-    @classmethod
-    def of(cls, values: Iterable[float | bool | None]) -> Rate:
-        """Return the mean of the values that are known; that of answers, yes or no, with its interval."""
-        known = [v for v in values if v is not None]
-        if not known:
-            return cls(None, 0)
-        share = sum(map(float, known)) / len(known)
-        ends = wilson(share, len(known)) if isinstance(known[0], bool) else ()
-        return cls(share, len(known), *ends)
-
 
 @dataclass(frozen=True)
 class Summary:
@@ -60,7 +50,13 @@ Selector = Callable[[CaseScore], bool]
 
 def rate(scores: Iterable[CaseScore], key: str, select: Selector = lambda s: True) -> Rate:
     """Return the mean of a column over the selected rows that have it."""
-    return Rate.of(getattr(s, key) for s in scores if select(s))
+    values = [getattr(s, key) for s in scores if select(s) and getattr(s, key) is not None]
+    if not values:
+        return Rate(None, 0)
+    share = sum(map(float, values)) / len(values)
+    if isinstance(values[0], bool):
+        return Rate(share, len(values), *wilson(share, len(values)))
+    return Rate(share, len(values))
 
 
 def summarise(scores: Sequence[CaseScore], *, least: float = 0.0) -> Summary:
@@ -82,10 +78,14 @@ def _rates(kept: Sequence[CaseScore]) -> dict[str, Rate]:
         return lambda s: s.truth == truth
 
     def abstained(truth: str) -> Rate:
-        return Rate.of(s.said == truth for s in kept if s.truth == truth and s.detected is not None)
+        rows = [s for s in kept if s.truth == truth and s.detected is not None]
+        if not rows:
+            return Rate(None, 0)
+        share = sum(s.said == truth for s in rows) / len(rows)
+        return Rate(share, len(rows), *wilson(share, len(rows)))
 
     answered = [s for s in kept if s.single]
-    close = [float(s.closure_error <= CLOSE) for s in kept if s.closure_error is not None]
+    close = [s.closure_error <= CLOSE for s in kept if s.closure_error is not None]
     stated = [(p, right) for s in kept for p, right in s.stated]
     names, inside = sum(s.parameters for s in kept), sum(s.parameters_inside for s in kept)
     return {
@@ -107,7 +107,7 @@ def _rates(kept: Sequence[CaseScore]) -> dict[str, Rate]:
         "under_excited_abstention": abstained("under_excited"),
         "under_excited_rivals": rate(kept, "rivals"),
         "closure_error": rate(kept, "closure_error"),
-        "closure_within_0.05": Rate.of(close),
+        "closure_within_0.05": Rate(sum(close) / len(close), len(close)) if close else Rate(None, 0),
         "closure_interval_coverage": rate(kept, "closure_inside"),
         "tip_closure_error": rate(kept, "tip_error"),
         "parameter_interval_coverage": Rate(inside / names if names else None, names),

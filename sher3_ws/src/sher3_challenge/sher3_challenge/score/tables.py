@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 from rich.console import Console
 from rich.table import Table
 
@@ -26,11 +24,6 @@ TARGETS = {
 """What the diagnosis is held to on cases with a gap of at least three floors."""
 
 
-def aim(targets: Mapping[str, tuple[str, float]], rate: str) -> str:
-    """Return what a rate is held to, in words; empty where it is held to nothing."""
-    return "{} {:g}".format(*targets[rate]) if rate in targets else ""
-
-
 def print_outcome(outcome: Outcome, console: Console) -> None:
     """Print the tables of an outcome."""
     first, last = outcome.seeds
@@ -38,9 +31,7 @@ def print_outcome(outcome: Outcome, console: Console) -> None:
     console.print(rates_table(f"gap/floor of at least {CLEAR:g}, seeds {first}:{last}", summaries))
     if len(outcome.plants) > 1:
         title = f"diagnosis by truth plant, gap/floor of at least {CLEAR:g}"
-        console.print(
-            rates_table(title, {p: outcome.summary(least=CLEAR, plant=p) for p in outcome.plants}, whole=True)
-        )
+        console.print(plants_table(title, {p: outcome.summary(least=CLEAR, plant=p) for p in outcome.plants}))
     whole = outcome.summary()
     console.print(rates_table("all cases", {who: outcome.summary(who) for who in outcome.scores}))
     console.print(confusion_table("status (truth down, verdict across)", whole.status_confusion))
@@ -66,15 +57,27 @@ def misses_table(outcome: Outcome) -> Table:
     return table
 
 
-def rates_table(title: str, summaries: dict[str, Summary], whole: bool = False) -> Table:
-    """Return the table of rates beside their targets: the first column with number and interval, all where `whole`."""
+def rates_table(title: str, summaries: dict[str, Summary]) -> Table:
+    """Return the table of rates: the diagnosis with number and interval beside its targets, then the baselines."""
     table = Table(title=title)
     for name in ("rate", "target", *summaries):
         table.add_column(name, no_wrap=name == "rate")
     first, *others = summaries.values()
-    beside = _full if whole else _short
     for name, rate in first.rates.items():
-        table.add_row(name, aim(TARGETS, name), _full(rate), *(beside(other.rates[name]) for other in others))
+        sign, limit = TARGETS.get(name, ("", 0.0))
+        target = f"{sign} {limit:g}" if sign else ""
+        table.add_row(name, target, _full(rate), *(_short(other.rates[name]) for other in others))
+    return table
+
+
+def plants_table(title: str, summaries: dict[str, Summary]) -> Table:
+    """Return the table of rates with a column per truth plant, each with number and interval."""
+    table = Table(title=title)
+    for name in ("rate", "target", *summaries):
+        table.add_column(name, no_wrap=name == "rate")
+    for name in next(iter(summaries.values())).rates:
+        sign, limit = TARGETS.get(name, ("", 0.0))
+        table.add_row(name, f"{sign} {limit:g}" if sign else "", *(_full(s.rates[name]) for s in summaries.values()))
     return table
 
 

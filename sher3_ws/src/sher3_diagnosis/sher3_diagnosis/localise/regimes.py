@@ -54,8 +54,9 @@ def regime_masks(evidence: Evidence, run: int, actuator: str) -> Families:
     families: Families = {
         "speed": {"at rest": rest, "slow": ~rest & ~fast, "fast": fast},
         "load": {"under load": view.loaded, "without load": ~view.loaded},
-        "excitation": {f"in {view.excitation}": np.ones(len(speed), dtype=bool)},
     }
+    if len(set(evidence.excitations)) > 1:
+        families["excitation"] = {f"in {view.excitation}": np.ones(len(speed), dtype=bool)}
     middle, span = _warmth(evidence)
     if view.temperature_known and span > WARM:
         families["temperature"] = {"warm": view.warmth > middle, "cool": view.warmth <= middle}

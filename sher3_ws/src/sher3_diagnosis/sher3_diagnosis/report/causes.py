@@ -12,7 +12,7 @@ from sher3_diagnosis.machine import Diagnosis
 from sher3_diagnosis.report.odds import significant
 from sher3_diagnosis.report.summary import told
 from sher3_diagnosis.verdict import Cause, Parameter
-from sher3_diagnosis.words import listed, place, quantity, range_text, share, words
+from sher3_diagnosis.words import listed, lower, place, quantity, range_text, share, words
 
 NO_LOSS = 1e-9
 """Explained loss below which a share of it means nothing."""
@@ -100,9 +100,8 @@ def pattern_text(found: Pattern) -> str:
     if worst is None:
         return ""
     return (
-        f"What it takes off lies where it predicts to {share(found.agreement)} over speed, direction, position, load "
-        f"and runs. It differs most {worst.regime}: {share(worst.predicted)} predicted, {share(worst.realised)} of the "
-        "reduction on held-out runs."
+        f"The gap shrinks where this law says: they agree to {share(found.agreement)}, and least {worst.regime}, where "
+        f"{share(worst.predicted)} of the reduction was expected and {share(worst.realised)} was seen on held-out data."
     )
 
 
@@ -134,7 +133,7 @@ def separates(cause: Effect, rival: Effect) -> str:
     if rival.id == cause.id:
         return "the same effect at another place: its own axis moves it"
     if set(rival.inputs) != set(cause.inputs):
-        return f"{words(rival.id)} depends on {_inputs(rival)}, {words(cause.id).lower()} on {_inputs(cause)}"
+        return f"{words(rival.id)} depends on {_inputs(rival)}, {lower(cause.id)} on {_inputs(cause)}"
     return f"the same inputs, another law: `{rival.best.excitation}`, since {rival.best.why}"
 
 

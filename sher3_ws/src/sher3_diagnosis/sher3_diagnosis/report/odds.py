@@ -34,8 +34,9 @@ def odds(verdict: Verdict) -> str:
 
 
 def name_of(cause: Cause) -> str:
-    """Return effect and place of a cause."""
-    return f"{lower(cause.effect)} on {place(cause.actuator)}"
+    """Return effect and place of a cause, and the condition under which alone it acts."""
+    only = f" ({cause.condition})" if cause.condition else ""
+    return f"{lower(cause.effect)} on {place(cause.actuator)}{only}"
 
 
 def _at(where: Place | Unexplained) -> str:
@@ -50,11 +51,31 @@ def _names(of: Answer | Verdict) -> set[tuple[str, str]]:
 
 def sized(cause: Cause) -> str:
     """Return a cause with the first of its parameters that differs from zero."""
-    name, first = next(((n, p) for n, p in cause.parameters.items() if significant(p)), ("", None))
-    if first is None or (first.unit == "1" and name not in SHARES):
-        return name_of(cause)
-    size = f"{100.0 * first.value:.3g} %" if first.unit == "1" else quantity(first.value, first.unit)
-    return f"{name_of(cause)}, {size}"
+    first = next((p for p in told(cause).values() if significant(p)), None)
+    return (
+        name_of(cause)
+        if first is None or first.unit == "1"
+        else f"{name_of(cause)}, {quantity(first.value, first.unit)}"
+    )
+
+
+def told(cause: Cause) -> dict[str, Parameter]:
+    """Return the parameters of a cause without sizes that are exactly zero; shares in percent.
+
+    Of parameters with one interval, the first.
+    """
+    out: dict[str, Parameter] = {}
+    for name, p in cause.parameters.items():
+        nothing = p.low is None and p.value == 0.0 and p.unit != "1"  # a friction that turns round at once
+        if not nothing and (p.low is None or p not in out.values()):
+            out[name] = p
+    return {name: _in_percent(p) if p.unit == "1" and name in SHARES else p for name, p in out.items()}
+
+
+def _in_percent(p: Parameter) -> Parameter:
+    """Return a share in percent."""
+    ends = (None if x is None else 100.0 * x for x in (p.low, p.high))
+    return p.model_copy(update={"value": 100.0 * p.value, **dict(zip(("low", "high"), ends, strict=True)), "unit": "%"})
 
 
 DECADES = 100.0
@@ -100,6 +121,6 @@ def sizes(answer: Answer) -> str:
     return ", ".join(
         f"{n.replace('_', ' ')} {p.means or quantity(p.value, p.unit)} ({range_text(p.low, p.high, p.unit)})"
         for c in answer.causes
-        for n, p in c.parameters.items()
+        for n, p in told(c).items()
         if significant(p)
     )

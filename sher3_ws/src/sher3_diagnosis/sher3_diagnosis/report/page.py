@@ -31,6 +31,7 @@ def render(
     folder: str = "",
     case: str = "",
     in_memory: bool = False,
+    options: str = "",
 ) -> str:
     """Return the report of a diagnosis as one HTML page without external resources.
 
@@ -41,6 +42,7 @@ def render(
         folder: where the verdict is written; default `gap/<title>`.
         case: folder of the case; default its name.
         in_memory: whether the case is in no folder: what goes on from here is a method of the answer.
+        options: of the diagnosis, as in `command`.
     """
     loader = jinja2.PackageLoader("sher3_diagnosis", "report")
     environment = jinja2.Environment(loader=loader, autoescape=True, trim_blocks=True, lstrip_blocks=True)
@@ -48,7 +50,7 @@ def render(
     environment.filters["words"] = words
     with rc_context(STYLE):
         return environment.get_template(TEMPLATE).render(
-            found=_formula(found), **_sections(diagnosis, title, folder, case or title, in_memory)
+            found=_formula(found), **_sections(diagnosis, title, (case or title, folder, options), in_memory)
         )
 
 
@@ -61,13 +63,13 @@ SAID = (words, place, quantity, share, ratio_text, answered, sizes, percent)
 """How the template says what it finds in a verdict."""
 
 
-def _sections(diagnosis: Diagnosis, title: str, folder: str, case: str, in_memory: bool) -> dict[str, object]:
+def _sections(diagnosis: Diagnosis, title: str, typed: tuple[str, str, str], in_memory: bool) -> dict[str, object]:
     verdict, reporter = diagnosis.verdict, diagnosis.machine.reporter()
     parts = [f.evidence for f in diagnosis.findings]
     rests = {e.id: e.leaves_out for e in diagnosis.machine.library() if e.leaves_out}
     table = reporter.table(diagnosis)
-    lines = five_lines(verdict, reporter, rests, table, case, folder)
-    going = command(verdict, reporter, case, folder)
+    lines = five_lines(verdict, reporter, rests, table, *typed)
+    going = command(verdict, reporter, *typed)
     if in_memory and going is not None:
         going = CORRECTED if verdict.causes else None
         lines = [(head, text) for head, text in lines if head != "next"]

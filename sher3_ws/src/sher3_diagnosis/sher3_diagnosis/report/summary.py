@@ -7,8 +7,9 @@ from types import MappingProxyType
 from typing import Any
 
 from sher3_diagnosis.report.odds import name_of, odds, significant, sized
+from sher3_diagnosis.report.odds import told as told
 from sher3_diagnosis.reporter import Reporter, Table
-from sher3_diagnosis.verdict import Cause, Interval, Parameter, Verdict
+from sher3_diagnosis.verdict import Cause, Interval, Verdict
 from sher3_diagnosis.words import listed, lower, place, quantity, range_text, ratio_text, share, words
 
 LEFT_OVER = 1.2
@@ -51,6 +52,7 @@ def five_lines(
     table: Table | None = None,
     case: str = "CASE",
     folder: str = "",
+    options: str = "",
 ) -> list[tuple[str, str]]:
     """Return (label, text) of the five lines: verdict, where, cause, closure, next; with a table a cause for each row.
 
@@ -60,7 +62,8 @@ def five_lines(
         rests: as in `headline`.
         table: of the causes, where the machine has one.
         case: its folder.
-        folder: where its verdict is written; both as in `command`, so that the next line can be typed as it stands.
+        folder: where its verdict is written.
+        options: of the diagnosis; all three as in `command`, so that the next line can be typed as it stands.
     """
     causes = ["; ".join(cause_text(c) for c in verdict.causes) or _unknown(verdict)]
     return [
@@ -68,28 +71,18 @@ def five_lines(
         ("where", _where(verdict)),
         *(("cause", text) for text in (causes if table is None else table.lines())),
         ("closure", _closure(verdict, reporter.end)),
-        ("next", _next(verdict, reporter, case, folder)),
+        ("next", _next(verdict, reporter, case, folder, options)),
     ]
 
 
 def cause_text(cause: Cause) -> str:
     """Return a cause with every parameter that differs from zero, its first one where none does, and its rivals."""
-    text = f"{words(cause.effect)} on {place(cause.actuator)}"
+    text = words(name_of(cause))
     known = list(told(cause).items())
     for name, p in [(n, p) for n, p in known if significant(p)] or known[:1]:
         text += f", {name.replace('_', ' ')} {p.means or quantity(p.value, p.unit)}"
         text += "" if p.low is None else f" ({range_text(p.low, p.high, p.unit)})"
     return text + (f" [or {', '.join(words(r).lower() for r in cause.rivals)}]" if cause.rivals else "")
-
-
-def told(cause: Cause) -> dict[str, Parameter]:
-    """Return the parameters of a cause without sizes that are exactly zero; of those with one interval, the first."""
-    out: dict[str, Parameter] = {}
-    for name, p in cause.parameters.items():
-        nothing = p.low is None and p.value == 0.0 and p.unit != "1"  # a friction that turns round at once
-        if not nothing and (p.low is None or p not in out.values()):
-            out[name] = p
-    return out
 
 
 def closure_text(value: Interval) -> str:
@@ -140,7 +133,9 @@ def _where(verdict: Verdict) -> str:
 def _unknown(verdict: Verdict) -> str:
     if verdict.unexplained is None:
         return "none needed"
-    alike = [f"{lower(i.effect)} ({share(i.closure.value)})" for i in verdict.unexplained.imitated_by]
+    alike = [
+        f"{lower(i.effect)} on {place(i.actuator)} ({share(i.closure.value)})" for i in verdict.unexplained.imitated_by
+    ]
     nearest = f", though {listed(alike)} imitate{'s' * (len(alike) == 1)} it" if alike else ""
     return f"none of the library{nearest}; what is left: {verdict.unexplained.signature}"
 
@@ -159,7 +154,9 @@ def _closure(verdict: Verdict, end: str) -> str:
     return ", ".join(parts) or ("nothing to close" if verdict.status == "no_gap" else "nothing, without a cause")
 
 
-def command(verdict: Verdict, reporter: Reporter[Any], case: str, folder: str = "") -> tuple[str, str] | None:
+def command(
+    verdict: Verdict, reporter: Reporter[Any], case: str, folder: str = "", options: str = ""
+) -> tuple[str, str] | None:
     """Return the command that goes on from a verdict and what it does; None where there is none.
 
     Args:
@@ -167,6 +164,7 @@ def command(verdict: Verdict, reporter: Reporter[Any], case: str, folder: str = 
         reporter: of the machine: whether the project simulates it, and what takes its causes.
         case: its folder.
         folder: where the verdict was written; default where `sher3 gap diagnose` writes it.
+        options: `--without ...` of the diagnosis, which a search for a formula repeats.
     """
     simulated, target = reporter.simulated, reporter.target
     file = _file(case, folder)
@@ -181,12 +179,12 @@ def command(verdict: Verdict, reporter: Reporter[Any], case: str, folder: str = 
     if verdict.status == "outside_library" and bet is not None and bet.probability >= WORTH_TRYING:
         tries = f"apply {file} -o corrected.yaml --case {case}" if simulated else f"export {file} {target}"
         return f"sher3 gap {tries} --bet", f"tries the best bet, {share(bet.probability)}"
-    if verdict.status == "outside_library":
-        return f"sher3 gap discover {case} --save found.yaml", "looks for a formula that explains it"
+    if verdict.status == "outside_library" and reporter.formulas:
+        return f"sher3 gap discover {case}{options} --save found.yaml", "looks for a formula that explains it"
     return None
 
 
-def _next(verdict: Verdict, reporter: Reporter[Any], case: str, folder: str) -> str:
+def _next(verdict: Verdict, reporter: Reporter[Any], case: str, folder: str, options: str) -> str:
     e = verdict.next_experiment
     if e is not None:
         added = f", with {e.added}," if e.added else ""
@@ -196,7 +194,7 @@ def _next(verdict: Verdict, reporter: Reporter[Any], case: str, folder: str) -> 
         apart = f"{' / '.join(words(i).lower() for i in e.separates)} apart{expected}"
         tells = f"{e.excitation}{added} {'tells' if told else 'hardly tells'} {apart}"
         return f"`sher3 gap experiment {_file(case, folder)} {case}`: {tells}" if reporter.simulated else tells
-    line = command(verdict, reporter, case, folder)
+    line = command(verdict, reporter, case, folder, options)
     return "none" if line is None else f"`{line[0]}` {line[1]}"
 
 

@@ -113,6 +113,7 @@ class BacklashOnAxis(Backlash):
     kinds: ClassVar[tuple[str, ...]] = ("axis", "servo")
     units: ClassVar[Mapping[str, str]] = {}
     plain = True
+    amount = "width"
     SMALLER = (0.06, 0.12, 0.25, 0.45)
     """Widths in spans of the residual that are tried for a load that stays put in the gap."""
     SOFT = (0.001, 0.01, 0.05)

@@ -67,9 +67,7 @@ def recorded(machine: object, runs: Sequence[Any], joints: Mapping[str, str], la
         remedy = (
             "check a chain of axes or an arm in motion; the SHER's verdicts are checked by `sher3 gap apply --case`"
         )
-        raise ExportError(
-            "records of this kind of machine are not run in MuJoCo", value=type(machine).__name__, remedy=remedy
-        )
+        raise ExportError("records of this kind of machine are not run in MuJoCo", remedy=remedy)
     axes, coupled = machine.described.chain, isinstance(machine, Manipulator) and machine.described.coupling is not None
     late = late and not coupled  # what a motor that moves several joints is late by no model can be given
     out = []

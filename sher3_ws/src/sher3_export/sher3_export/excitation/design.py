@@ -57,15 +57,17 @@ class Excitation:
         return np.arange(int(self.motion.seconds * RATE) + 1) / RATE
 
 
+def is_driven(machine: Any) -> bool:
+    """Return whether a machine can be told to move: a chain of axes or an arm, none of whose joints swings freely."""
+    return isinstance(machine, Axes | Manipulator) and not any(j.free for j in machine.described.chain)
+
+
 def designed(machine: Any, runs: Sequence[Any], seed: int = 0) -> Excitation:
     """Design a motion for a chain of axes or an arm, within the range, speed and acceleration that its runs reached.
 
     Raises:
-        ExportError: the machine is of another kind, or a joint did not move.
+        ExportError: a joint did not move.
     """
-    if not isinstance(machine, Axes | Manipulator):
-        remedy = "record what the verdict's `next_experiment` names"
-        raise ExportError("motions are designed for axes and arms", value=type(machine).__name__, remedy=remedy)
     described = machine.described.chain
     names, slides = [j.name for j in described], [j.motion == "linear" for j in described]
     parts = [p for p in machine.gather(runs) if not is_law(p)]

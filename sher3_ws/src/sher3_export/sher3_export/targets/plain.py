@@ -1,4 +1,4 @@
-"""Plain YAML: every constant with its interval, for a simulator that has no file of its own."""
+"""Plain YAML: every constant and every other number of a cause, for a simulator that has no file of its own."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class Plain(Target):
         self.joints: dict[str, dict[str, Any]] = {}
 
     def apply(self, change: Change) -> str:
-        """Write a change; everything that is a constant can be written."""
+        """Write a change; every number can be written."""
         entry = {"value": change.value, "low": change.low, "high": change.high, "unit": change.unit}
         self.joints.setdefault(change.joint, {}).setdefault(change.constant, []).append(
             {**entry, "from": change.effect}

@@ -13,6 +13,8 @@ from sher3_gap_cli.options import Library, RequestError, RobotFile, Trust, check
 
 if TYPE_CHECKING:
     from sher3_diagnosis.channel import Channel
+    from sher3_diagnosis.discover.formula import Discovery
+    from sher3_diagnosis.verdict import Verdict
 
 
 def discover(
@@ -48,6 +50,7 @@ def discover(
         place = _channel(where)
         diagnosis = diagnosed(Task(case, robot, check_effects(without or [])), say)
         found = search(diagnosis, place, say)
+        left = others(diagnosis.verdict, found) if found.claimed else []
         if save is not None and found.claimed:
             save_found(found, name or f"found_{found.channel.stage}_{found.channel.actuator}", save)
         if out is not None:
@@ -61,8 +64,16 @@ def discover(
         typer.echo(json.dumps({"case": str(case), "saved": saved, **found_data(found)}))
         return
     typer.echo(found_text(found))
+    typer.echo("".join(f"left     no cause at {text} either: give --place {text}\n" for text in left), nl=False)
     if saved:
         typer.echo(f"saved    {saved}: `sher3 gap diagnose --library {saved} CASE` finds it again")
+
+
+def others(verdict: Verdict, found: Discovery) -> list[str]:
+    """Return STAGE/ACTUATOR of the places without a cause, but for those a formula was looked for at."""
+    known = {(c.stage, c.actuator) for c in verdict.causes} | {(c.stage, c.actuator) for c in found.channels}
+    places = [(w.stage, w.actuator) for w in verdict.where]
+    return [f"{stage}/{actuator}" for stage, actuator in places if (stage, actuator) not in known]
 
 
 def _channel(text: str) -> Channel | None:

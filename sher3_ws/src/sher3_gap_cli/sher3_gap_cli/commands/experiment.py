@@ -59,38 +59,35 @@ def experiment(
 
 
 def motion_command(verdict: Path, case: Path, output: Path, as_json: bool, bet: bool) -> str:
-    """Design a motion for another machine, write its file and return what to print."""
-    from sher3_chain.manipulator.causes.confounding import known_weights
-    from sher3_export.excitation.design import designed
+    """Design what to record of another machine, write the file of its motion, if it moves, and return what to print."""
+    from sher3_chain.manipulator.causes.confounding import beyond_motion
+    from sher3_export.excitation.design import TRIED, designed, is_driven
     from sher3_export.excitation.forms import save
     from sher3_export.verdicts import read_verdict
     from sher3_machines import open_case
 
-    causes = read_verdict(verdict, bet).causes
-    open_ones = [f"{' / '.join([c.effect, *c.rivals])} on {c.actuator}" for c in causes if c.rivals]
-    weights = known_weights(causes)
-    made = designed(*open_case(case))
-    save(output, made)
-    data = {
-        "rivals": open_ones,
-        "weights": weights,
-        "joints": list(made.joints),
-        "seconds": made.motion.seconds,
-        "told": made.told,
-        "median": made.median,
-    }
-    if as_json:
-        return json.dumps({"file": str(output), **data})
-    lines = [
-        f"rivals     {'; '.join(open_ones) or 'none'}",
-        *(f"weight     {text}" for text in weights),
-        f"motion     {', '.join(made.joints)}: {made.motion.seconds:g} s from rest to rest, to be repeated",
-        "within     range, speed and acceleration of the case's records; collisions are not checked: begin slowly",
-        f"tells      the least told constant {made.told:.3g} times as well as the best; median of those tried: "
-        f"{made.median:.3g}",
-        f"file       {output}; record it, `sher3 gap import` and `diagnose` it",
-    ]
-    return "\n".join(lines)
+    (machine, runs), causes = open_case(case), read_verdict(verdict, bet).causes
+    open_ones = [c for c in causes if c.rivals]
+    shown = {e.id: e.best.why for e in machine.library()}
+    besides = [*beyond_motion(causes), *dict.fromkeys(shown[e] for c in open_ones for e in c.rivals if e in shown)]
+    rivals = [f"{' / '.join([c.effect, *c.rivals])} on {c.actuator}" for c in open_ones]
+    made = designed(machine, runs) if is_driven(machine) else None
+    data: dict[str, Any] = {"file": None, "rivals": rivals, "besides": besides}
+    lines = [f"rivals     {'; '.join(rivals) or 'none'}", *(f"record     {text}" for text in besides)]
+    if made is not None:
+        save(output, made)
+        data |= {"file": str(output), "joints": list(made.joints), "seconds": made.motion.seconds}
+        data |= {"told": made.told, "median": made.median}
+        lines += [
+            f"motion     {', '.join(made.joints)}: {made.motion.seconds:g} s from rest to rest, to be repeated",
+            "within     range, speed and acceleration of the case's records; collisions are not checked: begin slowly",
+            f"tells      its worst told constant {made.told:.2g} times as well as its best told one; the median of "
+            f"{TRIED} motions {made.median:.2g} times",
+            f"file       {output}; record it, `sher3 gap import` and `diagnose` it",
+        ]
+    return (
+        json.dumps(data) if as_json else "\n".join([*lines, *([] if made or besides else ["record     nothing more"])])
+    )
 
 
 def design_command(verdict: Path, case: Path | None, output: Path, robot: Path | None, as_json: bool, bet: bool) -> str:

@@ -102,9 +102,9 @@ def _ranges(given: Any, check: Path | None, model: Path | None, names: dict[str,
 
     if check is None:
         ranges = Ranges(worlds_of(given), identified=given.identified, motors=travels_of(given, motors))
-        return {"text": ranges.text(), "coverage": {}}
+        return {"text": ranges.text(), "ranges": ranges.told(), "coverage": {}}
     found = covered(given, check, model, names, motors)
-    return {"text": found.ranges.text(), "coverage": dict(found.coverage)}
+    return {"text": found.ranges.text(), "ranges": found.ranges.told(), "coverage": dict(found.coverage)}
 
 
 def gap_data(gap: JointGap) -> dict[str, Any]:
@@ -114,7 +114,7 @@ def gap_data(gap: JointGap) -> dict[str, Any]:
 
 def _told(data: dict[str, Any]) -> str:
     lines = [data["file"]]
-    lines += [f"  {text}" for text in data.get("written", [])]
+    lines += [f"  {text}" for text in (*data.get("written", []), *data.get("ranges", []))]
     lines += [f"  not expressed: {text}" for text in data.get("not_expressed", [])]
     for gap in data.get("gaps", []):
         closed = f"{gap['closure']['value']:.1%} closed"

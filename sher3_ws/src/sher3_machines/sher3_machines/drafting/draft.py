@@ -48,6 +48,8 @@ MOST_GEARED = 1e5
 """Ratio beyond which two columns are not two encoders of one axis."""
 FOLLOWS = 0.9
 """Correlation of two encoders below which one does not move with the other: a held axis."""
+DYING = 0.5
+"""Swing of the last third of a record over that of the first one below which its body comes to rest."""
 STEPPED = 0.1
 """Share of the samples up to which what a servo is told changes in steps."""
 LISTED = 12
@@ -98,6 +100,8 @@ def drafted(path: Path, tables: Tables, rate: float | None, guesses: list[str], 
     known = {name for name, _ in roles}
     left += [n for n, x in tables.items() if n not in known and n != clock and moves(x)]
     axes = [_axis(axis, signals, tables, period, guesses) for axis, signals in groups.items()]
+    if len(axes) == 1:
+        _let_go(axes[0], values_of(next(iter(groups.values()))["position"], tables), guesses)
     told_by_speed(time, axes, tables, None if clock is None else tables[clock], guesses)
     if not axes:
         raise MachineError(
@@ -189,6 +193,17 @@ def _axis(axis: str, signals: Mapping[str, Place], tables: Tables, period: float
     turns = own == "rev" or own in VELOCITIES  # may well be many
     named_so = why == NAMED and not turns
     return {**out, **(_range(label, x * UNITS[own] * factor, str(out["motion"]), guesses) if named_so else {})}
+
+
+def _let_go(axis: dict[str, Any], x: Array, guesses: list[str]) -> None:
+    """Give a body of which only the place (n,) was recorded, and which comes to rest, a mass of one."""
+    swing, ends = np.abs(x - x[-1]), len(x) // 3
+    if axis["command_law"]["kind"] == "none" and swing[-ends:].max() < DYING * swing[:ends].max():
+        axis["mass"] = 1.0
+        guesses.append(
+            f"{axis['name']}: let go, because it comes to rest; its mass of 1 is a placeholder: forces are for each kg "
+            "(kg m^2)"
+        )
 
 
 def _as_place(label: str, columns: dict[str, Any], x: Array, pulses: Array, guesses: list[str]) -> None:
@@ -295,8 +310,5 @@ def _law(axis: str, columns: Mapping[str, Any], guesses: list[str]) -> dict[str,
     if "reference" in columns:
         guesses.append(f"{axis}: a position servo, because a reference and no force was recorded")
         return {"kind": "position"}
-    guesses.append(
-        f"{axis}: undriven, because neither reference nor force was found; of a body that is let go state `mass`: 1.0 "
-        "tells its forces for each kg (kg m^2)"
-    )
+    guesses.append(f"{axis}: undriven, because neither reference nor force was found")
     return {"kind": "none"}

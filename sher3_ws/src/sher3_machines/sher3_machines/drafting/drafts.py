@@ -15,6 +15,9 @@ from sher3_machines.intake.kinds import kinds
 from sher3_machines.intake.runs import longest
 from sher3_machines.intake.tables import Tables
 
+FEWEST = 3
+"""Rows that a record or a table has at least: of two nothing shows whether one of them is wrong."""
+
 
 def draft_of(path: Path, rate: float | None = None, model: Path | None = None, names: Sequence[str] = ()) -> Draft:
     """Draft what the first kind that knows the file makes of it, else a chain of axes.
@@ -26,9 +29,14 @@ def draft_of(path: Path, rate: float | None = None, model: Path | None = None, n
         names: of the columns in their order, where the file has none.
 
     Raises:
-        MachineError: the file cannot be read, or no column looks like a time or a position.
+        MachineError: the file cannot be read or holds next to nothing, or no column looks like a time or a position.
     """
     tables = longest(path)
+    rows = max(map(len, tables.values()), default=0)
+    if rows < FEWEST:
+        raise MachineError(
+            f"{path.name}: too few rows", value=rows, limit=FEWEST, remedy="give the file of the samples"
+        )
     if names:
         return _named(path, tables, rate, model, given(names, tables), [])
     try:

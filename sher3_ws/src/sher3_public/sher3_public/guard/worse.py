@@ -69,7 +69,7 @@ def _growths(baseline: Verdict, now: Verdict, allowed: float) -> Iterator[Worse]
         if before is None or before.effect != cause.effect:
             continue
         for name, value in told(cause).items():
-            was = before.parameters.get(name)
+            was = told(before).get(name)
             if was is not None and was.unit == value.unit and least(value) > (1.0 + allowed) * most(was) > 0.0:
                 sizes = f"{quantity(was.value, was.unit)} -> {quantity(value.value, value.unit)}"
                 yield Worse(

@@ -64,7 +64,7 @@ class ArmKind(TableKind[ArmDescription]):
     reader = staticmethod(read_arm)
     stored = ("joints",)
     written_for = ("arm",)
-    policy = Policy(swept=True, carried=True, own_level=True)
+    policy = Policy(swept=True, carried=True, own_level=True, absences=True)
     plan = SearchPlan(layers=True)
     words = Words(
         rows="{n} postures, measured from outside",

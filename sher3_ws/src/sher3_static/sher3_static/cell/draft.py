@@ -16,6 +16,7 @@ from sher3_machines.intake.spelling import bare
 from sher3_machines.intake.tables import Tables
 
 from sher3_static.readings import LACKING, as_weight
+from sher3_static.sensor.draft import wrench_of
 
 STATED = vocabulary("applied known weight weights mass masses reference ref true truth gewicht gewichte masse")
 """Words for what is laid on a cell."""
@@ -34,7 +35,7 @@ PLACES = ("position", "reference", "velocity", "temperature")
 def loads_of(tables: Tables) -> tuple[str, str] | None:
     """Return the columns of known load and reading of a table without a time; None where it has no such."""
     flat = {n: x for n, x in tables.items() if x.ndim == 1 and np.isfinite(x).mean() >= 1.0 - LACKING}
-    if any(tells_time(n) for n in tables):
+    if any(tells_time(n) for n in tables) or {"force", "torque"} <= wrench_of(tables).keys():
         return None
     told = [n for words in (STATED, FORCE) for n in flat if words & set(words_of(bare_and_unit(bare(n))[0]))]
     for load in dict.fromkeys(told):

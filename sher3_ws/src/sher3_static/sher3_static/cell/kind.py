@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.finding import Finding
+from sher3_diagnosis.words import lower
 from sher3_effects.table_view import CellView
 from sher3_machines.intake.kind import Draft
 from sher3_machines.intake.tables import Tables
@@ -79,7 +80,7 @@ class CellKind(TableKind[CellDescription]):
         notes = [f"readings scatter by {100.0 * table.floor[0] / whole:.2g}% of the largest force"]
         for cause in finding.causes:
             forces = [p.value for p in cause.parameters.values() if p.unit == table.unit]
-            notes += [f"{cause.effect}: {100.0 * value / whole:.2g}% of it" for value in forces]
+            notes += [f"{lower(cause.effect)} of {100.0 * value / whole:.2g}% of the largest force" for value in forces]
         return notes
 
 

@@ -70,7 +70,8 @@ class Circular(NamedTuple):
     backward: float
 
     def __str__(self) -> str:
-        return ", ".join(f"{name} {1e6 * x:.3g}" for name, x in zip(("G(b)", "G(xy)", "G(yx)"), self, strict=True))
+        named = zip(("G(b)", "G(xy)", "G(yx)"), self, strict=True)
+        return ", ".join(f"{name} {1e6 * x:.3g}" for name, x in named if np.isfinite(x))
 
 
 def circular(angle: Array, radius: Array, turning: Array) -> Circular:

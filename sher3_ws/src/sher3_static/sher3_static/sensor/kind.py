@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from pathlib import Path
 
 import numpy as np
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.finding import Finding
 from sher3_effects import pages
+from sher3_machines.intake.kind import Draft
+from sher3_machines.intake.tables import Tables
 from sher3_machines.thresholds import BLOCKS
 
 from sher3_static.kind import TableKind
 from sher3_static.readings import Readings, joined, warmed
 from sher3_static.reporter import Words
 from sher3_static.sensor.description import SensorDescription
+from sher3_static.sensor.draft import draft_sensor
 from sher3_static.sensor.reading import expressed_otherwise, identify, read_sensor, scatter
 from sher3_static.sensor.view import AppliedView, SensorView, TurnedView
 from sher3_static.table import Table, TableEvidence
@@ -40,6 +44,10 @@ class SensorKind(TableKind[SensorDescription]):
         flows={"sensing": "load → reading"},
         residual={"sensing": "reading − nominal"},
     )
+
+    def draft(self, path: Path, tables: Tables, rate: float | None, model: Path | None) -> Draft | None:
+        """Draft a sensor of a table of wrenches and orientations."""
+        return draft_sensor(path, tables)
 
     def tables(self, known: SensorDescription, runs: Sequence[Readings]) -> Sequence[Table]:
         """Return all readings as one table; every eighth is held out in turn."""

@@ -12,12 +12,19 @@ from collections.abc import Iterable, Mapping, Sequence
 import numpy as np
 from sher3_diagnosis.channel import Array
 from sher3_diagnosis.verdict import Cause
+from sher3_effects import pages
 
 from sher3_chain.manipulator.evidence import ArmMotionEvidence
 from sher3_chain.manipulator.library import of_joints
 from sher3_chain.manipulator.view import MotionView
 from sher3_chain.thresholds import CONFOUNDED, TAKES_PART
 
+WEIGH = (
+    "a known weight does: put one on the last link, or on the axis, record the same motion without and with it, and "
+    "tag the runs by `payload`"
+)
+FEEL = "the force does: record the motor's current, or a sensor's reading, with the same motion, as `effort`"
+"""What tells causes apart that no motion does."""
 GAIN, WEIGHT, PAYLOAD = "drive gain", "weight", "payload"
 """Quantities that multiply one force, see `Effect.scales`."""
 
@@ -92,19 +99,20 @@ def confounding_notes(evidence: ArmMotionEvidence) -> list[str]:
     ]
 
 
-def known_weights(causes: Iterable[Cause]) -> list[str]:
-    """Return what a known weight would tell of causes that no motion tells apart: the drive's gain, weight, payload.
+def beyond_motion(causes: Iterable[Cause]) -> list[str]:
+    """Return what would tell causes apart that no motion tells apart: a known weight, or a force that is recorded.
 
-    Each of them multiplies the same force; a weight that somebody put on a scale adds another one.
+    The drive's gain, weight and payload multiply one force; a weight that somebody put on a scale adds another one.
     """
-    same = set(same_force())
-    open_ones = [(c.actuator, [e for e in (c.effect, *c.rivals) if e in same]) for c in causes]
-    return [
-        f"no motion tells {_listed([e.replace('_', ' ') for e in found])} on {site} apart, a known weight does: "
-        "hang one on the last link, record the same motion without and with it, and tag the runs by `payload`"
-        for site, found in open_ones
-        if len(found) > 1
-    ]
+    same, alike = set(same_force()), {e.id: e.indistinct for kind in ("servo", "joint") for e in pages(kind)}
+    out = []
+    for c in causes:
+        heavy = [e for e in (c.effect, *c.rivals) if e in same]
+        unfelt = [c.effect, *(e for e in c.rivals if e in alike.get(c.effect, ()))]
+        for found, told in ((heavy, WEIGH), (unfelt, FEEL)):
+            names = _listed([e.replace("_", " ") for e in found]) if len(found) > 1 else ""
+            out += [f"no motion tells {names} on {c.actuator} apart, {told}"] if names else []
+    return out
 
 
 def _listed(words: Sequence[str]) -> str:

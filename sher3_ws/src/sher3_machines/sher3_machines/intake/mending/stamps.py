@@ -35,7 +35,7 @@ def even_stamps(stamps: Array, run: str) -> tuple[Array, NDArray[np.int64], str]
     if len(steps) < FEWEST or not (steps > 0.0).any():
         raise MachineError(
             f"{run}: time does not increase",
-            value=f"{len(kept)} stamps",
+            value=f"{len(kept)} stamps" + (f", {stamps[kept[0]]:g} to {stamps[kept[-1]]:g}" if len(kept) else ""),
             limit=f"{FEWEST} different ones",
             remedy="give stamps that grow (turn those that fall), or the rate of the samples: `time: {rate: HZ}`",
         )

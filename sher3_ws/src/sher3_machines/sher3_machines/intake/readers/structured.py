@@ -13,12 +13,15 @@ from sher3_common.array_files import read_array, read_arrays
 from sher3_diagnosis.channel import Array
 
 from sher3_machines.errors import no_reader
+from sher3_machines.intake.readers.cells import value_of
 from sher3_machines.intake.readers.epics import is_archive, tables_of_archive
 from sher3_machines.intake.readers.shapes import plain
 from sher3_machines.intake.readers.text import decoded
 
 MAX_BYTES = 2_000_000_000
 MAX_TEXT_BYTES = 500_000_000
+SHOWN = 100
+"""Cells of a column of text by which it is one of numbers."""
 
 
 def read_npz(path: Path) -> dict[str, Array]:
@@ -112,6 +115,16 @@ def numeric(data: Mapping[str, object]) -> dict[str, Array]:
             x = np.asarray(value)
         except ValueError:  # rows of different lengths are no signal
             continue
+        x = _numbers(x) if x.dtype.kind in "OU" and x.ndim == 1 else x
         if x.dtype.kind in "fiub" and x.ndim:
             out[name] = plain(x)
     return out
+
+
+def _numbers(x: Array) -> Array:
+    """Return a column of text as numbers, nan for other words, where most of its first cells are numbers or nothing."""
+    told = [value_of("" if cell is None else str(cell), False) for cell in x[:SHOWN]]
+    if 2 * sum(isinstance(cell, float) for cell in told) <= len(told):
+        return x
+    told += [value_of("" if cell is None else str(cell), False) for cell in x[SHOWN:]]
+    return np.array([cell if isinstance(cell, float) else np.nan for cell in told])
