@@ -132,7 +132,6 @@ class Axes(Chain[AxisEvidence]):
             *stop_notes(finding.evidence),
             *blind_spots(finding),
             *carried_by_others(finding, self.described.axes),
-            *([] if finding.significant else unseen(finding.evidence)),
             *([again.note] if again else []),
         ]
 
@@ -276,17 +275,6 @@ def stop_notes(evidence: AxisEvidence) -> list[str]:
     """Return a sentence on an axis that lay at a stop of its stated range."""
     at = np.concatenate([view.at_a_stop for view in evidence.records])
     return [stop_note(evidence.axis.name, at)] if at.any() else []
-
-
-def unseen(evidence: AxisEvidence) -> list[str]:
-    """Return how large a gap would have to be to be seen where none was found."""
-    floors: dict[str, list[float]] = {}
-    for found in evidence.floors:
-        for channel, floor in found.items():
-            floors.setdefault(f"{evidence.unit(channel)}, {channel.stage.replace('_', ' ')}", []).append(
-                float(floor[0])
-            )
-    return [f"{evidence.axis.name}: nothing above the floor of {np.median(x):.3g} {of}" for of, x in floors.items()]
 
 
 def carried_by_others(finding: Finding[AxisEvidence], axes: Sequence[Axis]) -> list[str]:
