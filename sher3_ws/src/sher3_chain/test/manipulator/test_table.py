@@ -36,3 +36,11 @@ def test_the_page_of_an_arm_shows_its_table(tmp_path):
         diagnose(machine(tmp_path / "lift.urdf"), [run_of(q, needed(q, v, a) + friction(v, (8.0, 0.5)))]), "lift"
     )
     assert "Joint by joint" in page and "<th>Coulomb</th>" in page
+
+
+def test_a_loss_under_load_shows_its_dry_part_and_its_share():
+    lossy = caused("gear_loss", "friction", "A1", "share", 0.06, "1")
+    dry = caused("gear_loss", "friction", "A1", "usual", 0.145, "N*m")
+    both = lossy.model_copy(update={"parameters": {**lossy.parameters, **dry.parameters}})
+    row = table_of([both], of_joints(), ["A1"], ["A1"]).rows[0]
+    assert row[3].startswith("Gear loss share 6 % (") and "usual 145 mN·m (" in row[3]

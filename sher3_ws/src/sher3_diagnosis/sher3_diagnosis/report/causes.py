@@ -117,8 +117,9 @@ def _rivals(cause: Cause, attribution: Attribution, index: int) -> list[RivalRow
         rival = trial.terms[-1]
         behind = (trial.total - attribution.fit.total) / worth
         separator = separates(chosen, rival.effect)
-        less = "all of it" if behind >= 1.0 else f"{100.0 * behind:.1f} %"
-        rows.append(RivalRow(words(rival.effect.id), place(rival.site), less, key in kept, separator))
+        less = "all of it" if behind >= 1.0 else f"{100.0 * behind:.1f} %" if behind > 0.0 else "nothing"
+        open_one = key in kept or behind <= 0.0
+        rows.append(RivalRow(words(rival.effect.id), place(rival.site), less, open_one, separator))
     return rows
 
 

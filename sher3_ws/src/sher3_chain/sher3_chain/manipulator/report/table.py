@@ -39,7 +39,7 @@ def table_of(causes: Iterable[Cause], library: Iterable[Effect], joints: Sequenc
     cells: dict[str, dict[str, list[str]]] = {joint: {} for joint in joints}
     for cause in causes:
         head = head_of(cause, sets.get(cause.effect, {}))
-        cells.setdefault(cause.actuator, {}).setdefault(head, []).append(cell(cause))
+        cells.setdefault(cause.actuator, {}).setdefault(head, []).append(cell(cause, sets.get(cause.effect, {})))
     rows = [
         [place(site), *("; ".join(found.get(head, ())) or EMPTY for head in HEADS)]
         if found or site in judged
@@ -55,14 +55,17 @@ def head_of(cause: Cause, sets: Mapping[str, str]) -> str:
     return next((head for head, held in HEADS.items() if constant in held), OTHER)
 
 
-def cell(cause: Cause) -> str:
-    """Return a cause with the first of its parameters that differs from zero, its interval and its rivals."""
+def cell(cause: Cause, sets: Mapping[str, str]) -> str:
+    """Return a cause with what it sets of constants, else its first parameter, with intervals and rivals."""
     parameters = told(cause)
-    name = next((n for n, p in parameters.items() if significant(p)), next(iter(parameters), ""))
-    text, p = words(cause.effect), parameters.get(name)
-    if p is not None:
-        text += f" {p.means or quantity(p.value, p.unit)}"
-        text += "" if p.low is None else f" ({range_text(p.low, p.high, p.unit)})"
-        text += "" if significant(p) else ", size not told"
+    sizes = {n: p for n, p in parameters.items() if significant(p)} or parameters
+    names = [n for n in sizes if n in sets] or list(sizes)[:1]
+    text, shown = words(cause.effect), []
+    for name in names:
+        p, label = sizes[name], f"{name.replace('_', ' ')} " * (len(names) > 1)
+        interval = "" if p.low is None else f" ({range_text(p.low, p.high, p.unit)})"
+        untold = "" if significant(p) else ", size not told"
+        shown.append(f"{label}{p.means or quantity(p.value, p.unit)}{interval}{untold}")
+    text += f" {', '.join(shown)}" if shown else ""
     text += f" in {cause.condition}" if cause.condition else ""
     return text + (f" or {', '.join(words(r).lower() for r in cause.rivals)}" if cause.rivals else "")
