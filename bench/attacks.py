@@ -10,8 +10,7 @@ driver is told zero or stops; where the hand leaves, off the place where the tip
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable, Iterator, Sequence
-from functools import partial
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -21,10 +20,9 @@ from sher3_drivers.bus.frame import iter_frames, pack_frames
 from sher3_drivers.canopen import objects as od
 from sher3_drivers.mock.drive import AxisReading
 from sher3_drivers.sensor.device import WrenchRecord
-from sher3_runtime import Graph
 from sher3_safety.rows.row import IDLE, LIMIT, MOVING, SIDEWAYS, State
-from sher3_safety.runs.stepped import APPROACH, MatrixRun
-from sher3_safety.search.trial import off_its_way, recover
+from sher3_safety.runs.stepped import MatrixRun
+from sher3_safety.search.trial import Trial, play
 
 ROBOT = load_robot()
 TICKS = 400
@@ -130,14 +128,13 @@ def one_stands(run: MatrixRun) -> None:
 
 
 class Case(NamedTuple):
-    """An attack, in a state of a regime; where the hand `leaves`, the tip's way ends. `last` of its robot."""
+    """An attack, in a state of a regime; where the hand `leaves`, the tip's way ends."""
 
     name: str
     attack: Callable[[MatrixRun], None]
     state: State
     regime: Regime = NEAR
     leaves: bool = False
-    last: bool = False
 
 
 BY_TURNS = unheard(lambda tick, node, can_id, channel: (tick + node) % 3 != 0, 2e-3, *LEGS)
@@ -164,46 +161,19 @@ CASES = (
 )
 
 
-def travel(run: MatrixRun, case: Case) -> tuple[float, str]:
-    """Return how far the tip gets off its way [m], and the first reason."""
-    operator = run.operator
-    operator.force, operator.across, operator.pedal = case.state.force, case.state.across, case.state.pedal
-    run.graph.step(APPROACH)
-    return off_its_way(run, partial(case.attack, run), TICKS, case.leaves)
-
-
-def end(run: MatrixRun) -> bool:
-    """End an attack and recover the robot; return whether it is enabled again."""
-    drives = run.rig.plant.drives
-    run.rig.force.tamper = drives.tamper_frames = drives.tamper_received = None
-    for drive in drives.drives.values():
-        drive.stray = drive.tamper = None
-    run.operator.across = 0.0
-    return recover(run)
-
-
-def results(cases: list[Case]) -> Iterator[str]:
-    """Try cases of one regime, with a new robot where one cannot be recovered; yield a line of each."""
-    left = list(cases)
-    while left:
-        with Graph(period=PERIOD, middleware=False) as graph:
-            run = MatrixRun(graph, ROBOT, 1, regime=left[0].regime.value)
-            ready = run.start()
-            while ready and left:
-                case = left.pop(0)
-                way, reason = travel(run, case)
-                yield f"{way * 1e6:7.1f} um  {case.regime.value:12}{case.state.name:10}{reason:18}{case.name}"
-                ready = not case.last and end(run)
+def travels(cases: Sequence[Case]) -> list[tuple[float, str]]:
+    """Return how far the tip gets off its way in each case [m], and the first reason."""
+    return play([Trial(case.attack, case.state, case.regime, TICKS, case.leaves) for case in cases], ROBOT, 1)
 
 
 def chosen(doc: str | None, cases: Sequence[Case]) -> None:
-    """Print a line for each case of those whose name has in it what is asked for, one regime after the other."""
+    """Print a line for each case of those whose name has in it what is asked for."""
     parser = argparse.ArgumentParser(description=doc, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--only", default="", help="only those whose name has this in it")
     only = parser.parse_args().only
-    for regime in (NEAR, FREE):
-        for line in results([case for case in cases if case.regime is regime and only in case.name]):
-            print(line, flush=True)
+    tried = [case for case in cases if only in case.name]
+    for case, (way, reason) in zip(tried, travels(tried), strict=True):
+        print(f"{way * 1e6:7.1f} um  {case.regime.value:12}{case.state.name:10}{reason:18}{case.name}")
 
 
 if __name__ == "__main__":

@@ -157,9 +157,9 @@ def regime_in_a_stop(run: MatrixRun) -> None:
 
 STAYS = "it stays as the hand leaves"
 CASES = (
-    Case(f"clock of the force sensor 2 ms behind, {STAYS}", clock("force_sensor", -1), FIRM, leaves=True, last=True),
-    Case(f"clock of the force sensor 6 ms behind, {STAYS}", clock("force_sensor", -3), FIRM, leaves=True, last=True),
-    Case(f"clock of the force sensor 2 ms ahead, {STAYS}", clock("force_sensor", 1), FIRM, leaves=True, last=True),
+    Case(f"clock of the force sensor 2 ms behind, {STAYS}", clock("force_sensor", -1), FIRM, leaves=True),
+    Case(f"clock of the force sensor 6 ms behind, {STAYS}", clock("force_sensor", -3), FIRM, leaves=True),
+    Case(f"clock of the force sensor 2 ms ahead, {STAYS}", clock("force_sensor", 1), FIRM, leaves=True),
     Case(f"force sensor at half its rate, {STAYS}", half_rate, FIRM, leaves=True),
     Case(f"sensor and drives heard by turns, {STAYS}", never_together, FIRM, leaves=True),
     Case(
@@ -167,17 +167,16 @@ CASES = (
         bias_by_turns,
         IDLE,
         leaves=True,
-        last=True,
     ),
     Case(f"NaN in torque z of the force sensor, {STAYS}", partial(stays, c5=float("nan")), FIRM, leaves=True),
-    Case(f"process of the force sensor restarts, {STAYS}", restarts, FIRM, leaves=True, last=True),
+    Case(f"process of the force sensor restarts, {STAYS}", restarts, FIRM, leaves=True),
     Case("reports in reverse order, delta_1 at 1 mm/s", reversed_order, IDLE),
     Case("reports of channel 0 a tick late, delta_1 at 1 mm/s", late_by(1), MOVING),
     Case(f"reports of channel 0 {COUNTS} ticks late, delta_1 at 1 mm/s", late_by(COUNTS), MOVING),
     Case("echoes five ticks old, delta_1 at 1 mm/s", stale_echoes, MOVING),
-    Case("time jumps by 1 s while it brakes, delta_1 at 1 mm/s", jumps(1.0), IDLE, last=True),
-    Case("time jumps by -0.05 s while it brakes, delta_1 at 1 mm/s", jumps(-0.05), IDLE, last=True),
-    Case("free asked for while it brakes, tilt at 1 mm/s", regime_in_a_stop, IDLE, last=True),
+    Case("time jumps by 1 s while it brakes, delta_1 at 1 mm/s", jumps(1.0), IDLE),
+    Case("time jumps by -0.05 s while it brakes, delta_1 at 1 mm/s", jumps(-0.05), IDLE),
+    Case("free asked for while it brakes, tilt at 1 mm/s", regime_in_a_stop, IDLE),
 )
 
 

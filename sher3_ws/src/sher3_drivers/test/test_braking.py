@@ -134,6 +134,26 @@ def test_all_axes_that_move_are_accused_and_each_once():
     assert trip.axes == (0, 1, 2, TILT) and tick == 4
 
 
+@pytest.mark.parametrize(("speed", "ticks"), [(0.0, 0), (2e-3, 3), (5e-3, 4), (12.2e-3, 6)])
+def test_the_power_goes_when_the_ramps_are_over_and_the_drives_show_it(speed, ticks):
+    """2 mm/s are 0 from the first SYNC of the stop on, 12.2 from the fourth; a command shows in its echo in 6 ms."""
+    robot = Robot(of(LEG, speed))
+    robot.watch.demand.stopped()
+    robot.stop(Trip(Reason.POSITION_LEFT, "left", axes=(LEG,)))
+    for tick in range(ticks):
+        assert not robot.watch.powers_off(robot.log), tick
+        robot.brake(REST)
+    assert robot.watch.powers_off(robot.log)
+
+
+def test_a_stop_that_holds_keeps_the_power():
+    robot = Robot()
+    robot.stop()
+    for _ in range(BRAKE_TICKS + 5):
+        robot.brake(REST)
+    assert not robot.watch.powers_off(robot.log)
+
+
 def test_an_axis_that_was_accused_of_the_stop_is_not_accused_again_before_the_rest():
     robot = Robot()
     robot.stop(Trip(Reason.POSITION_LEFT, "left", axes=(LEG,)))

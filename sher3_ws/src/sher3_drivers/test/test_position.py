@@ -155,19 +155,25 @@ def test_one_on_its_way_to_be_enabled_is_watched_too():
     )
 
 
-def test_a_drive_that_leaves_its_place_loses_its_power_at_once_the_others_brake(make_rig):
+@pytest.mark.parametrize(("speed", "others"), [(0.0, "SWITCH_ON_DISABLED"), (1e-3, "QUICK_STOP_ACTIVE")])
+def test_a_drive_that_leaves_its_place_loses_its_power_at_once_the_others_when_they_have_braked(
+    make_rig, speed, others
+):
+    """Who has been told to rest for 6 ms has braked; a ramp of a tick and these 6 ms end 4 ticks after the stop."""
     rig = make_rig()
     rig.enable()
     rig.plant.step, honest = lambda command: honest([command[0] + 5e-4, *command[1:]]), rig.plant.step
     for _ in range(20):
-        rig.tick(REST)
+        rig.tick((speed,) * 3 + (0.0, 0.0))
         if rig.driver.stop.first is not None:
             break
     assert rig.driver.stop.code in (Reason.POSITION_LEFT, Reason.DRIVE_DISOBEYS)
-    rig.tick()
-    rig.tick()
-    states = [drive.state.name for drive in rig.driver.session.drives]
-    assert states == ["SWITCH_ON_DISABLED", *["QUICK_STOP_ACTIVE"] * (len(ACTUATORS) - 1)]
+    seen = []
+    for _ in range(6):
+        rig.tick()
+        seen.append([drive.state.name for drive in rig.driver.session.drives])
+    assert seen[1] == ["SWITCH_ON_DISABLED", *[others] * (len(ACTUATORS) - 1)]
+    assert seen[-1] == ["SWITCH_ON_DISABLED"] * len(ACTUATORS)
 
 
 def words_and_beats(rig):

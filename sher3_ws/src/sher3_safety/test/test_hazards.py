@@ -45,7 +45,7 @@ def test_where_nothing_is_computed_the_gap_says_what_is_left(hazard):
 
 def test_positions_that_are_wrong_alike_stand_among_what_is_left():
     (hazard,) = [h for h in HAZARDS if h.name == "goes elsewhere, since a position is wrong"]
-    assert "both positions" in hazard.gap and "957 with the other sign" in hazard.gap
+    assert "both positions" in hazard.gap and "948 with the other sign" in hazard.gap
 
 
 def test_frames_that_are_lost_in_a_recovery_belong_to_the_hazard_of_one():

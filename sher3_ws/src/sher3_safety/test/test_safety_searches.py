@@ -48,10 +48,12 @@ def test_the_size_is_a_share_of_the_limit_of_the_drive_and_the_onset_is_in_ticks
 
 
 def test_the_worst_is_the_one_nearest_to_its_budget_and_one_beyond_it_misses():
-    small, large, near_one = Found(DRAW, 10e-6, "A"), Found(DRAW, 251e-6, "B"), Found(DRAW, 249e-6, "C")
+    small, large, near_one = (Found(DRAW, x, n, 4) for x, n in ((10e-6, "A"), (251e-6, "B"), (249e-6, "C")))
     result = SearchResult([small, large, near_one], 1)
     assert result.worst(2) == [large, near_one] and result.missed == [large]
-    assert "3 draws, seed 1: 1 beyond their budget." in result.as_text() and "| B | 251.0 | 250 |" in result.as_text()
+    assert (
+        "3 draws, seed 1: 1 beyond their budget." in result.as_text() and "| B | 251.0 | 250 | 4 |" in result.as_text()
+    )
     assert result.to_dict()["trials"][0]["faults"] == DRAW.told()
 
 
@@ -99,7 +101,7 @@ def test_a_search_goes_on_from_what_is_kept_as_if_it_had_not_ended(tmp_path, mon
 
     def formula(draws, robot, seed):
         tried.append(len(draws))
-        return [Found(draw, 1e-6 * sum(f.onset for f in draw.faults), "A") for draw in draws]
+        return [Found(draw, 1e-6 * sum(f.onset for f in draw.faults), "A", seed) for draw in draws]
 
     monkeypatch.setattr("sher3_safety.search.climb.try_all", formula)
     whole = search(100, seed=5)

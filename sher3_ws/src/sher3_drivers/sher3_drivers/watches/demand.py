@@ -72,6 +72,14 @@ class DemandCheck:
         """The newest command on the wire (5,) [m/s, rad/s]; zero before the first."""
         return self._sent[-1] if self._sent else (0.0,) * len(self._scales)
 
+    @property
+    def braked(self) -> bool:
+        """Whether the drives are told to stop, and their ramps have been over for as long as a command takes to show.
+
+        A velocity loop of the nominal robot has 13 % of its speed left then, and no less than 8 % after 27 ms.
+        """
+        return self._brakes and not any(map(any, self._sent))
+
     def check(self, echo: Vector) -> Trip | None:
         """Judge the echoes (5,) [m/s, rad/s] of a tick."""
         if not self._sent or (echo == self._sent[-1] and not any(self.strayed)):  # nearly always

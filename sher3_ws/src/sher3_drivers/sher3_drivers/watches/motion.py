@@ -179,5 +179,5 @@ class MotionWatch:
         return bool(stop.first.axes) or self.frozen.blind or self.rest.disobeyed
 
     def powers_off(self, stop: StopLog) -> bool:
-        """Return whether the robot has braked and is to lose its power now."""
-        return stop.action is Action.POWER_OFF and self.rest.resting
+        """Return whether the robot has braked and is to lose its power now: whatever still moves is not told to."""
+        return stop.action is Action.POWER_OFF and self.demand.braked

@@ -49,19 +49,19 @@ class SearchResult:
         lines = [
             f"{len(self.found)} draws, seed {self.seed}: {len(self.missed)} beyond their budget.",
             "",
-            "| regime | state | faults, onset [ticks] | first reason | travel [um] | budget [um] |",
-            "|---|---|---|---|---|---|",
+            "| regime | state | faults, onset [ticks] | first reason | travel [um] | budget [um] | seed |",
+            "|---|---|---|---|---|---|---|",
         ]
         for one in self.worst():
-            draw = one.draw
-            lines.append(f"| {draw.line()} | {one.reason} | {one.travel * 1e6:.1f} | {draw.budget * 1e6:g} |")
+            draw, travel = one.draw, one.travel * 1e6
+            lines.append(f"| {draw.line()} | {one.reason} | {travel:.1f} | {draw.budget * 1e6:g} | {one.seed} |")
         return "\n".join(lines)
 
     def to_dict(self) -> dict[str, Any]:
         """Return plain data."""
         rows = [
             {"regime": one.draw.regime.value, "state": one.draw.state.name, "faults": one.draw.told(),
-             "reason": one.reason, "travel": one.travel, "budget": one.draw.budget}
+             "reason": one.reason, "travel": one.travel, "budget": one.draw.budget, "seed": one.seed}
             for one in self.worst(len(self.found))
         ]  # fmt: skip
         return {"seed": self.seed, "draws": len(rows), "missed": len(self.missed), "trials": rows}
@@ -100,17 +100,16 @@ def search(
 
 
 def _entry(found: Found) -> dict[str, Any]:
-    return {"draw": found.draw.line(EXACT), "travel": found.travel, "reason": found.reason}
+    return {"draw": found.draw.line(EXACT), "travel": found.travel, "reason": found.reason, "seed": found.seed}
 
 
 def _found(entry: dict[str, Any]) -> Found:
-    return Found(read(entry["draw"]), entry["travel"], entry["reason"])
+    return Found(read(entry["draw"]), entry["travel"], entry["reason"], entry["seed"])
 
 
 def again(draws: Sequence[Draw], seed: int = 1, robot: Robot | None = None) -> SearchResult:
-    """Try some draws, each on a robot of its own."""
-    robot = robot or load_robot()
-    return SearchResult([found for draw in draws for found in try_all([draw], robot, seed)], seed)
+    """Try some draws on a robot of that seed."""
+    return SearchResult(try_all(draws, robot or load_robot(), seed), seed)
 
 
 def _next(random: Random, regime: Regime, count: int, result: SearchResult) -> list[Draw]:

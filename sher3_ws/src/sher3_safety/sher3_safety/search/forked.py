@@ -1,0 +1,42 @@
+"""A call in a fork of this process: it begins with everything as it is here, and leaves everything here as it was."""
+
+from __future__ import annotations
+
+import os
+import pickle
+import signal
+from collections.abc import Callable
+from typing import Any
+
+from sher3_common import Sher3Error
+
+LONGEST = 120
+"""Seconds after which a fork ends: threads of the middleware do not live on in it, but what they held stays held."""
+
+
+class ForkEnded(Sher3Error):
+    """A fork that ended without an answer; what it raised stands on the standard error."""
+
+
+def forked(call: Callable[[], Any]) -> Any:
+    """Return what `call` returns in a fork of this process, of whose threads only this one goes on there.
+
+    Raises:
+        ForkEnded: it raised an exception, or its process was ended.
+    """
+    reads, writes = os.pipe()
+    child = os.fork()
+    if not child:
+        signal.alarm(LONGEST)
+        try:
+            with os.fdopen(writes, "wb") as pipe:
+                pickle.dump(call(), pipe)
+        finally:
+            os._exit(0)
+    os.close(writes)
+    with os.fdopen(reads, "rb") as pipe:
+        answer = pipe.read()
+    os.waitpid(child, 0)
+    if not answer:
+        raise ForkEnded("a fork ended without an answer", value=child, remedy="see what it printed")
+    return pickle.loads(answer)

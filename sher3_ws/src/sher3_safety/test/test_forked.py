@@ -1,0 +1,27 @@
+"""A call in a fork answers as one here does, and changes nothing here."""
+
+import os
+
+import pytest
+from sher3_safety.search.forked import ForkEnded, forked
+
+
+def test_a_fork_answers_and_leaves_everything_here_as_it_was():
+    seen = [1.5]
+
+    def call():
+        seen.append(0.1)
+        return sum(seen), os.getpid()
+
+    answers = [forked(call) for _ in range(3)]
+    assert [answer for answer, _ in answers] == [1.6] * 3 and seen == [1.5]
+    assert os.getpid() not in [process for _, process in answers]
+
+
+def test_a_long_answer_comes_whole():
+    assert forked(lambda: b"x" * 1_000_000) == b"x" * 1_000_000
+
+
+def test_a_fork_that_fails_is_an_error():
+    with pytest.raises(ForkEnded, match="without an answer"):
+        forked(lambda: 1 // 0)
