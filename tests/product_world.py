@@ -383,6 +383,7 @@ class World:
                 driver.gate.following,
                 driver.session.all_enabled,
                 driver.watches.motion.rest.resting,
+                driver.watches.motion.demand.braked,
                 self.glue.state,
                 self.glue.action,
             ),

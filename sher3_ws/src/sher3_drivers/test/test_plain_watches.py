@@ -63,7 +63,7 @@ def test_the_compiled_check_of_the_encoders_is_the_plain_one(settings):
     for seed in range(40):
         watch, plain = JointWatch(SCALES, settings), [PlainAxis(scale, settings) for scale in SCALES]
         for feedback, _, since in history(seed, settings.period):
-            expected, hole = [None] * 5, max(10 * settings.period, settings.stall_limit)
+            expected, hole = [None] * 5, max(settings.missing_limit * settings.period, settings.stall_limit)
             readings = zip(feedback.motor_position, feedback.load_position, feedback.velocity_demand, strict=True)
             for number, (axis, (motor, load, demand)) in enumerate(zip(plain, readings, strict=True)):
                 if 0.0 < since <= hole:

@@ -15,9 +15,6 @@ from sher3_drivers.units import AxisScale
 from sher3_drivers.watches.axis import AXIS, AxisCheck, begin_axes, judge_axes
 from sher3_drivers.watches.trips import Trip
 
-_HOLE = 10
-"""Lost ticks that are bridged at most: after as many (`missing_limit`) the driver has stopped the robot."""
-
 
 @cache
 def _judge(count: int) -> Callable[..., int]:
@@ -34,7 +31,7 @@ class JointWatch:
     """
 
     def __init__(self, scales: Sequence[AxisScale], settings: MotorDriverSettings) -> None:
-        self._hole = max(_HOLE * settings.period, settings.stall_limit)
+        self._hole = max(settings.missing_limit * settings.period, settings.stall_limit)
         self._rows = np.zeros(len(scales), AXIS)
         self.axes = [AxisCheck(scale, settings, self._rows, number) for number, scale in enumerate(scales)]
         begin_axes(self._rows, (0.0,) * len(scales), (0.0,) * len(scales))
@@ -43,8 +40,8 @@ class JointWatch:
     def check(self, feedback: DriveFeedback, since: float) -> Trip | None:
         """Judge a feedback that came `since` s after the one before; 0 means that there was none before.
 
-        Over ticks that were lost the newest demand is taken to have held. When more than `_HOLE` of them were lost, or
-        more time than the loop may hang, the axes start afresh: the robot has been stopped for that reason by then.
+        Over ticks that were lost the newest demand is taken to have held. When more than `missing_limit` were lost,
+        or more time than the loop may hang, the axes start afresh: the robot has been stopped for that reason by then.
         They start afresh at the first feedback too. All axes whose motors are off their demand are suspected, and all
         whose encoders differ: nobody can say that they brake, so they lose their power at once.
         """
