@@ -1,10 +1,11 @@
 """Bench: machines with three to six causes drawn at once: which are named, with which interval, what is wrong.
 
 Axes and servos are those of `sher3_chain/test/drawn_axes.py`: their friction sticks and slips, their integrator is
-Heun's; the diagnosis has other laws. Arms are those of `ladder_arms.py`, run by MuJoCo. Beside it, on the same
-records, stand two fits of the same dictionary: all its columns by least squares, and the lasso whose weight is chosen
-on the last third of the record; of an arm the first alone. With `--sysid` axes and servos have mujoco.sysid, too, which
-fits those of these numbers that a MuJoCo model has (`drawn_sysid.py`).
+Heun's; the diagnosis has other laws. Arms are those of `ladder_arms.py`, run by MuJoCo; a follower is one whose log has
+no forces, and whose servos may be late or weak as well. Beside it, on the same records, stand two fits of the same
+dictionary: all its columns by least squares, and the lasso whose weight is chosen on the last third of the record; of
+an arm the first alone. With `--sysid` axes and servos have mujoco.sysid, too, which fits those of these numbers that a
+MuJoCo model has (`drawn_sysid.py`).
 
     nice python bench/drawn_machines.py                                 # 50 axes and 50 servos
     nice python bench/drawn_machines.py --seeds 7:9 --kinds arm         # others
@@ -179,7 +180,8 @@ def drawers(sysid: bool) -> dict[str, Callable[[int], dict]]:
     """Return kind of machine -> what draws one from a seed, diagnoses it and returns what is kept of it."""
     fits = FITS | ({SYSID: by_sysid} if sysid else {})
     axes = {"axis": drawn_axis, "servo": drawn_servo}
-    return {**{kind: partial(row_of_axis, draw, fits) for kind, draw in axes.items()}, "arm": row_of_arm}
+    arms = {"arm": row_of_arm, "follower": partial(row_of_arm, forces=False)}
+    return {**{kind: partial(row_of_axis, draw, fits) for kind, draw in axes.items()}, **arms}
 
 
 class Score:

@@ -45,6 +45,10 @@ UNIT = 0.1
 """Mass of a payload with which its column is reckoned, kg: it is linear."""
 NOTICED = 0.05
 """Share of the signal from which a column of a fit is called a cause."""
+OF_SERVOS = {"late": "command_delay", "weak": "controller_gain"}
+"""What is drawn besides where the log has no forces -> the effect that it is."""
+LATEST, WEAKEST = 12, 0.4
+"""Largest delay of a servo, steps, and largest share that its law lacks."""
 CONTAINS = {"presliding_friction": "coulomb_friction", "stribeck_friction": "coulomb_friction"}
 CONTAINS |= {"cable_torque": "spring_torque", "link_mass": "payload_mass", "link_inertia": "payload_mass"}
 """Effect -> what else is named with it: its law contains that."""
@@ -58,15 +62,17 @@ class Cause(NamedTuple):
     size: float
 
 
-def drawn_causes(rng: np.random.Generator, joints: int) -> list[Cause]:
+def drawn_causes(rng: np.random.Generator, joints: int, kinds: Sequence[str] = tuple(EFFECTS)) -> list[Cause]:
     """Return three to six causes, no two alike at one joint; a payload is at the last link."""
-    places = [(k, j) for k in EFFECTS for j in range(joints) if k != "payload" or j == joints - 1]
+    places = [(k, j) for k in kinds for j in range(joints) if k != "payload" or j == joints - 1]
     chosen = rng.choice(len(places), int(rng.integers(3, 7)), replace=False)
     return [Cause(*places[i], float(rng.uniform(0.4, 1.0))) for i in sorted(chosen)]
 
 
 def amount(cause: Cause) -> float:
-    """Return the size of a cause in SI units: those of the joints fall as their links do."""
+    """Return the size of a cause, SI units, those of the joints fall as their links do; of a servo steps or a share."""
+    if cause.kind in OF_SERVOS:
+        return float(round(LATEST * cause.size)) if cause.kind == "late" else -WEAKEST * cause.size
     return LARGEST[cause.kind] * cause.size * (1.0 if cause.kind == "payload" else 0.5**cause.joint)
 
 
@@ -83,6 +89,13 @@ def with_causes(xml: str, causes: Sequence[Cause]) -> mujoco.MjModel:
             joint.stiffness[0] += size
         elif cause.kind == "rotor":
             joint.armature += size
+        elif cause.kind == "late":
+            drive = spec.actuators[cause.joint]
+            drive.delay, drive.nsample = size * spec.option.timestep, LATEST + 2
+        elif cause.kind == "weak":
+            drive = spec.actuators[cause.joint]
+            drive.gainprm[0] *= 1.0 + size
+            drive.biasprm[1:3] *= 1.0 + size
         else:
             ball = {"type": mujoco.mjtGeom.mjGEOM_SPHERE, "size": [0.01, 0, 0], "mass": size}
             own = spec.bodies[-1].add_body(pos=[0.25, 0, 0])  # what holds the link up does not hold its payload
@@ -90,32 +103,36 @@ def with_causes(xml: str, causes: Sequence[Cause]) -> mujoco.MjModel:
     return spec.compile()
 
 
-def row_of_arm(seed: int) -> dict:
-    """Return what is kept of one arm; each name has its joint, a payload none."""
-    rng = np.random.default_rng([seed, 3])
+def row_of_arm(seed: int, forces: bool = True) -> dict:
+    """Return what is kept of one arm; each name has its joint, a payload none.
+
+    Without `forces` in its log the law of its servos stands for them, and servos may be late or weak.
+    """
+    rng = np.random.default_rng([seed, 3] if forces else [seed, 4])
     xml = drawn_xml(rng, servo=True, joints=int(rng.integers(2, 4)), methods=METHODS[:3])
     nominal = mujoco.MjModel.from_xml_string(xml)
     names = [nominal.joint(i).name for i in range(nominal.nv)]
-    causes = drawn_causes(rng, nominal.nv)
+    causes = drawn_causes(rng, nominal.nv, [*EFFECTS, *(() if forces else OF_SERVOS)])
     plant = with_causes(xml, causes)
     stamps = np.arange(round(SECONDS / plant.opt.timestep)) * plant.opt.timestep
     ctrl = asked(rng, stamps, plant.nu) * plant.actuator_gear[:, 0]
     qpos, force = served(plant, ctrl)
     qpos = qpos + NOISE * rng.standard_normal(qpos.shape)
     begun = time.perf_counter()
-    verdict = gap.diagnose(xml, {"time": stamps, "ctrl": ctrl, "qpos": qpos, "actuator_force": force}).verdict
+    log = {"time": stamps, "ctrl": ctrl, "qpos": qpos, **({"actuator_force": force} if forces else {})}
+    verdict = gap.diagnose(xml, log).verdict
     told = [{at(x, c.actuator) for e in (c.effect, *c.rivals) for x in (e, CONTAINS.get(e, e))} for c in verdict.causes]
     seconds = time.perf_counter() - begun
     motion = motion_of(nominal, qpos, force)
-    called = [at(EFFECTS[c.kind], names[c.joint]) for c in causes]
+    called = [at((EFFECTS | OF_SERVOS)[c.kind], names[c.joint]) for c in causes]
     loaded = with_causes(xml, [Cause("payload", nominal.nv - 1, UNIT / LARGEST["payload"])])
     carried = (inverse(loaded, *motion[:3]) - inverse(nominal, *motion[:3])) / UNIT
-    places = [(c.kind, c.joint) for c in causes]
+    bodily = [(c.kind, c.joint) for c in causes if c.kind in EFFECTS]
     return {
         "seconds": seconds,
         "status": verdict.status,
         "truth": sorted(called),
-        "powerless": sorted(powerless_on(motion, carried, places, called)),
+        "powerless": sorted(powerless_on(motion, carried, bodily, [at(EFFECTS[k], names[j]) for k, j in bodily])),
         "held": held(causes, names, verdict),
         "impossible": meaningless(verdict),
         "sher3": [sorted(x) for x in told],
@@ -125,7 +142,7 @@ def row_of_arm(seed: int) -> dict:
 
 def held(causes: Sequence[Cause], names: Sequence[str], verdict: Verdict) -> list[bool]:
     """Return whether each interval of a size that was drawn holds it."""
-    drawn = {at(EFFECTS[c.kind], names[c.joint]): (PARAMETERS[c.kind], amount(c)) for c in causes}
+    drawn = {at(EFFECTS[c.kind], names[c.joint]): (PARAMETERS[c.kind], amount(c)) for c in causes if c.kind in EFFECTS}
     out = []
     for cause in verdict.causes:
         name, value = drawn.get(at(cause.effect, cause.actuator), ("", 0.0))

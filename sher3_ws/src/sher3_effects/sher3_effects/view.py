@@ -28,6 +28,7 @@ class NominalAxis(NamedTuple):
         seen: one count of the encoder or its noise, the larger, m or rad; 0 where nothing asks for it.
         told: whether its effort is what the drive was told, a voltage or a duty, and no force yet.
         follows: gain of the servo whose law stands for an effort that nobody recorded, N/m or N m/rad; 0: another.
+        of_step: inertia that a simulator's step adds to what the effort moves, kg or kg m^2: no gain multiplies it.
     """
 
     mass: float
@@ -42,6 +43,7 @@ class NominalAxis(NamedTuple):
     seen: float = 0.0
     told: bool = False
     follows: float = 0.0
+    of_step: float = 0.0
 
 
 class StatedLaw(NamedTuple):

@@ -114,7 +114,7 @@ def put(
 def opened(kind: type[Target], model: Path | Element | None) -> Target:
     """Return a writer for a target; raises ExportError where the model it needs is missing or wrong."""
     if issubclass(kind, Configuration):
-        return kind(None if model is None else nominal_of(model))
+        return kind(None if model is None else stated_by(model))
     if not issubclass(kind, XmlTarget):
         return kind()
     if model is None:
@@ -123,11 +123,11 @@ def opened(kind: type[Target], model: Path | Element | None) -> Target:
     return kind(_root(model, kind.root_tag) if isinstance(model, Path) else model)
 
 
-def nominal_of(model: Path | Element) -> dict[str, dict[str, float]]:
-    """Return what a model says of its joints, MJCF or URDF; raises ExportError where it is neither."""
+def stated_by(model: Path | Element) -> XmlTarget:
+    """Return a model that says what joints have, MJCF or URDF; raises ExportError where it is neither."""
     kinds = {kind.root_tag: kind for kind in (Mjcf, Urdf)}
     root = _root(model, "robot" if model.suffix == ".urdf" else "mujoco") if isinstance(model, Path) else model
-    return kinds[root.tag](root).nominal()
+    return kinds[root.tag](root)
 
 
 def _root(path: Path, tag: str) -> Element:

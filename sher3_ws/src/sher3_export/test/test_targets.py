@@ -143,8 +143,15 @@ def test_isaaclab_s_file_is_python_with_fields_that_isaac_lab_has(monkeypatch):
     slide = actuators["slide"]
     assert (slide.dynamic_friction, slide.friction) == (2.5, 2.5) and slide.viscous_friction == pytest.approx(0.4)
     assert (slide.armature, slide.actuator_effort_limit, slide.stiffness) == (0.02, 4.0, None)
-    assert (slide.min_delay, slide.max_delay) == (2, 3) and not done.untold
+    assert (slide.min_delay, slide.max_delay) == (6, 6) and not done.untold  # MuJoCo's step where none is stated
     assert ranges["slide"]["dynamic_friction"] == pytest.approx((2.3, 2.7))
+
+
+def test_a_delay_is_counted_in_the_steps_that_the_model_states(monkeypatch):
+    stated = MJCF.replace("<mujoco>", '<mujoco><option timestep="0.005"/>')
+    text = export(verdict(*CAUSES), "mjlab", parse_xml(stated, "mujoco")).text
+    slide = loaded(text, monkeypatch)[0]["slide"]
+    assert (slide.delay_min_lag, slide.delay_max_lag) == (2, 3) and "steps of 0.005 s" in text
 
 
 SERVO = """<mujoco><worldbody><body><joint name="slide"/><geom size=".1"/></body></worldbody>
@@ -166,7 +173,7 @@ def test_a_servo_of_other_gains_is_an_actuator_of_mjlab_s_own(monkeypatch):
     text = export(weak, "mjlab", parse_xml(SERVO.format('<position joint="slide" kp="50" kv="2"/>'), "mujoco")).text
     actuators, ranges = loaded(text, monkeypatch)
     slide = actuators["slide"]
-    assert (slide.stiffness, slide.damping, slide.frictionloss) == (pytest.approx(45.0), pytest.approx(1.8), 2.0)
+    assert (slide.stiffness, slide.damping) == (pytest.approx(45.0), pytest.approx(1.8))
     assert "BuiltinPositionActuatorCfg(" in text and "out of the MJCF" in text
     assert ranges["slide"]["stiffness"] == pytest.approx((45.5, 44.5))
     assert "XmlActuatorCfg(" in export(verdict(FRICTION), "mjlab").text
@@ -190,11 +197,27 @@ def test_mujoco_loads_the_ranges_and_an_export_later_adds_to_them():
         assert mujoco.MjModel.from_xml_string(text).numeric("slide/coulomb").data == pytest.approx(between)
 
 
+def given(text, monkeypatch, xml):
+    """Return friction, damping and rotor inertia of the first joint of a model with what mjlab's file says of it."""
+    loaded(text, monkeypatch)
+    space = {}
+    exec(text, space)
+    model = space["with_joints"](mujoco.MjSpec.from_string(xml)).compile()
+    return [float(x[0]) for x in (model.dof_frictionloss, model.dof_damping, model.dof_armature)]
+
+
+def test_what_is_of_the_joints_is_written_into_the_specification_that_mjlab_loads(monkeypatch):
+    """Its actuators take `frictionloss`, and leave the joint as the MJCF has it."""
+    text = export(verdict(*CAUSES), "mjlab", parse_xml(MJCF, "mujoco")).text
+    assert given(text, monkeypatch, MJCF) == pytest.approx([2.5, 0.4, 0.02])
+    assert "frictionloss" not in text.split("RANGES = ")[0].split("ACTUATORS = ")[1]
+
+
 def test_mjlab_s_file_is_python_with_fields_that_mjlab_has(monkeypatch):
     done = export(verdict(*CAUSES), "mjlab", parse_xml(URDF, "robot"))
     actuators, ranges = loaded(done.text, monkeypatch)
     slide = actuators["slide"]
-    assert (slide.target_names_expr, slide.frictionloss, slide.viscous_damping) == (("slide",), 2.5, 0.3)
+    assert slide.target_names_expr == ("slide",)
     assert (slide.delay_min_lag, slide.delay_max_lag) == (2, 3) and set(ranges["slide"]) == {
         "frictionloss",
         "viscous_damping",
@@ -204,10 +227,9 @@ def test_mjlab_s_file_is_python_with_fields_that_mjlab_has(monkeypatch):
 
 
 def test_without_a_model_a_configuration_says_that_its_values_add(monkeypatch):
-    text = export(verdict(FRICTION), "mjlab").text
-    assert (
-        "add what your asset has, or give --model" in text and loaded(text, monkeypatch)[0]["slide"].frictionloss == 2.0
-    )
+    text = export(verdict(FRICTION), "isaaclab").text
+    assert "add what your asset has, or give --model" in text
+    assert loaded(text, monkeypatch)[0]["slide"].dynamic_friction == 2.0
 
 
 @pytest.mark.parametrize("name", ["isaaclab", "mjlab"])

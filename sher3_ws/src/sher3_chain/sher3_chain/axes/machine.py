@@ -24,7 +24,6 @@ from sher3_chain.axes.causes.confounded_laws import dead_band_note, with_dead_ba
 from sher3_chain.axes.causes.detection_limits import unseen_note
 from sher3_chain.axes.causes.plan import AXIS
 from sher3_chain.axes.causes.refine import refine_free
-from sher3_chain.axes.causes.true_force import in_true_force
 from sher3_chain.axes.command.law import LAW, is_law, law_of_axis
 from sher3_chain.axes.evidence import AxisEvidence, gather_axis, levels_of
 from sher3_chain.axes.foreseen import foreseen
@@ -36,6 +35,7 @@ from sher3_chain.joint.conditions import Condition
 from sher3_chain.joint.description import AxesDescription, Axis, Gravity
 from sher3_chain.joint.own_unit import in_own_unit, own_unit_note, renamed
 from sher3_chain.joint.record import AxesRun
+from sher3_chain.joint.true_force import in_true_force
 from sher3_chain.power import unjudged
 from sher3_chain.readings.level import stop_note
 from sher3_chain.readings.wrong import without_wrong, wrong_readings

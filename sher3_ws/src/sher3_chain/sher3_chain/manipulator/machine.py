@@ -26,6 +26,7 @@ from sher3_chain.chain.machine import Chain
 from sher3_chain.joint.bounds import within_bounds
 from sher3_chain.joint.own_unit import RECORDED, in_own_unit
 from sher3_chain.joint.record import AxesRun
+from sher3_chain.joint.true_force import in_true_force
 from sher3_chain.manipulator.causes.confounding import GAIN, PAYLOAD, WEIGHT, confounding_notes, same_force
 from sher3_chain.manipulator.causes.lateness import LATE, late_efforts, timing_notes, with_closure, with_late_readings
 from sher3_chain.manipulator.causes.links import of_a_sum
@@ -134,6 +135,7 @@ class Manipulator(Chain[ArmMotionEvidence]):
         weak = {j.name for j in self.described.joints if j.by_its_law}
         alike = {e.id: (e.id, *e.indistinct) for e in self.effects(evidence)}
         causes = [with_hidden(c, alike[c.effect]) if c.actuator in weak and c.effect in alike else c for c in causes]
+        causes = in_true_force(causes)
         own, same = evidence.shares, same_force()
         return evidence, [with_hidden(in_own_unit(c, RECORDED), same) if c.actuator in own else c for c in causes]
 

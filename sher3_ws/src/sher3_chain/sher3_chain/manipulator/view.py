@@ -71,10 +71,12 @@ class MotionView(ChainView):
     def _axes(self) -> list[NominalAxis]:
         alone = np.array_equal(self.coupling, np.eye(len(self.joints)))
         laws = [(j.command_law.position_gain or 0.0) * (j.by_its_law and alone) for j in self.joints]
-        each = zip(self.joints, self.inertia, self.tops, laws, strict=True)
+        each = zip(self.joints, self.inertia, self.tops, laws, self.shares, strict=True)
         return [
-            NominalAxis(float(m), max(j.viscous, SLIP), self.lead(j.name), float(top), follows=law)
-            for j, m, top, law in each
+            NominalAxis(
+                float(m), max(j.viscous, SLIP), self.lead(j.name), float(top), follows=law, of_step=k * j.step_inertia
+            )
+            for j, m, top, law, k in each
         ]
 
     def lead(self, site: str) -> float:

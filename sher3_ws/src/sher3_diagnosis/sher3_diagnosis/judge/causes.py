@@ -15,6 +15,7 @@ from sher3_diagnosis.judge.evidence.cause import shown_at
 from sher3_diagnosis.localise.gaps import Gap
 from sher3_diagnosis.localise.regimes import regime
 from sher3_diagnosis.quantify.closure import closure
+from sher3_diagnosis.quantify.over_rivals import over_rivals
 from sher3_diagnosis.quantify.parameters import parameters
 from sher3_diagnosis.verdict import Cause, Where
 
@@ -37,7 +38,7 @@ def _cause(evidence: Evidence, attribution: Attribution, index: int) -> Cause:
         family=term.effect.family,
         stage=term.effect.stage_at(channel),
         actuator=term.site,
-        parameters=parameters(*told, index),
+        parameters=over_rivals(attribution, index, parameters(*told, index)),
         closure=closure(evidence, channel, without, found),
         rivals=list(dict.fromkeys(rivals)),
         condition=term.effect.condition,

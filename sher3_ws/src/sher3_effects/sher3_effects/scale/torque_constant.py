@@ -36,7 +36,9 @@ class TorqueConstant(Page):
 
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
         """One column: the force the motion needs. reported - needed = -relative / (1 + relative) * needed."""
-        return Signature({Channel(self.stage, site): column(-view.inertial[:, view.row(site)])})
+        row = view.row(site)
+        needed = view.inertial[:, row] - view.axis(site).of_step * view.acceleration[:, row]
+        return Signature({Channel(self.stage, site): column(-needed)})
 
     def of_model(self, shape: Shape) -> bool:
         """Return that it is a share of all forces that the model needs."""

@@ -7,13 +7,13 @@ from collections.abc import Mapping, Sequence
 from typing import ClassVar
 
 from sher3_export.changes import Change
-from sher3_export.targets.target import Target
+from sher3_export.targets.target import Target, XmlTarget
 
 DELAYS = ("delay", "servo_delay")
 """Constants that a group counts in physics steps: it gives a command, or a reference, so many of them late."""
 STEP = 0.005
-"""Physics step, s, in which a delay is counted; the file says so. Set by custom: tasks of both libraries run at 200 Hz.
-"""
+"""Physics step, s, in which a delay is counted where the model states none; the file says so. Isaac Lab's tasks run at
+200 Hz; mjlab runs at the step of the simulation's own configuration."""
 ALONE = "Values are what the machine has beyond its model: add what your asset has, or give --model."
 NO_GAINS = "the gains are not known here: give --model with position actuators, or multiply them by one plus this"
 GAINS: Mapping[str, tuple[str, ...]] = {
@@ -24,8 +24,6 @@ GAINS: Mapping[str, tuple[str, ...]] = {
 """Constant of a servo -> gains that it scales."""
 OF_GAINS = {constant: ", ".join(names) for constant, names in GAINS.items()}
 """The same as text."""
-Nominal = Mapping[str, Mapping[str, float]]
-"""Joint -> constant -> what the nominal model says of it."""
 
 
 class Configuration(Target):
@@ -51,8 +49,9 @@ class Configuration(Target):
     always: ClassVar[Mapping[str, object]] = {}
     version: ClassVar[str]
 
-    def __init__(self, nominal: Nominal | None = None) -> None:
-        self.nominal = nominal
+    def __init__(self, model: XmlTarget | None = None) -> None:
+        self.nominal = None if model is None else model.nominal()
+        self.step = STEP if model is None else model.step or STEP
         self.groups: dict[str, dict[str, float]] = {}
         self.ranges: dict[str, dict[str, tuple[float, float]]] = {}
 
@@ -65,7 +64,7 @@ class Configuration(Target):
         group, ranges = self.groups.setdefault(change.joint, {}), self.ranges.setdefault(change.joint, {})
         if change.constant in DELAYS:
             shortest, longest = self.delays
-            group |= {shortest: math.floor(change.value / STEP), longest: math.ceil(change.value / STEP)}
+            group |= {shortest: math.floor(change.value / self.step), longest: math.ceil(change.value / self.step)}
             return ""
         if change.constant in GAINS:
             return self._scale(change, group, ranges)
@@ -98,13 +97,17 @@ class Configuration(Target):
         head = "".join(f"# {' '.join(line.splitlines())}\n" for line in lines)
         return (
             f"{head}\nfrom {self.source} import {', '.join(used)}\n\n"
-            f"ACTUATORS = {{\n{groups}}}\n\nRANGES = {{\n{ranges}}}\n"
+            f"ACTUATORS = {{\n{groups}}}\n\nRANGES = {{\n{ranges}}}\n{self.beside()}"
         )
+
+    def beside(self) -> str:
+        """Return what the file has beside actuators and ranges; default nothing."""
+        return ""
 
     def said(self, remarks: Sequence[str]) -> list[str]:
         """Return the remarks, whose fields these are and what their values mean."""
         totals = ALONE if self.nominal is None else "Values are totals, with the model's."
-        return [*remarks, f"Fields of {self.version}. Delays in steps of {STEP} s. {totals}"]
+        return [*remarks, f"Fields of {self.version}. Delays in steps of {self.step} s. {totals}"]
 
     def finish(self) -> None:
         """Bring the groups into order before they are written; default nothing."""

@@ -142,7 +142,7 @@ class Mjcf(XmlTarget):
         """Friction at rest takes that in motion of the same cause along into its own law."""
         sliding = self._sliding.get((change.joint, change.effect), 0.0)
         inertia = mjcf_motor.inertia_at(self.root, change.joint) or self._inherited(joint, "armature")
-        if reason := mjcf_motor.at_rest(self.root, change, sliding, self._step, inertia):
+        if reason := mjcf_motor.at_rest(self.root, change, sliding, self.step, inertia):
             return reason
         return self._add(joint, "frictionloss", -sliding)
 
@@ -174,12 +174,12 @@ class Mjcf(XmlTarget):
         for actuator in actuators:
             delay = self._inherited(actuator, "delay") + change.value
             actuator.set("delay", written(delay))
-            actuator.set("nsample", str(math.ceil(delay / self._step) + SPARE))
+            actuator.set("nsample", str(math.ceil(delay / self.step) + SPARE))
         return self._needs(actuators)
 
     @property
-    def _step(self) -> float:
-        """Time step of the model, s."""
+    def step(self) -> float:
+        """Return the time step of the model, s."""
         option = self.root.find("option")
         return number(None if option is None else option.get("timestep"), STEP)
 
@@ -277,7 +277,7 @@ class Mjcf(XmlTarget):
         standing = self.joints.get(f"{change.joint}_spring")
         before = 0.0 if standing is None else 1.0 / number(standing.get("stiffness"))
         stiffness = 1.0 / (before + change.value)  # springs one behind the other
-        law = {"stiffness": written(stiffness), "damping": written(self._step * stiffness)}
+        law = {"stiffness": written(stiffness), "damping": written(self.step * stiffness)}
         if standing is None:
             return self._second(change, joint, "spring", law)
         standing.attrib.update(law)

@@ -101,6 +101,11 @@ class XmlTarget(Target):
     def all_joints(self) -> Sequence[Element]:
         """Return the joints of the model."""
 
+    @property
+    def step(self) -> float | None:
+        """Return the time step that the model states, s; None where it states none."""
+        return None
+
     @abstractmethod
     def nominal(self) -> dict[str, dict[str, float]]:
         """Return joint -> constant -> what the model says of friction, damping and rotor inertia, SI units."""

@@ -76,15 +76,14 @@ def beside_links(trial: Fit) -> bool:
 JOINT = SearchPlan(
     causes=CAUSES_OF_JOINT,
     down_to_floor=True,
+    together=True,
     possible=of_joint,
     order=plain_before_richer,
     reviews=(borne_out,),
 )
-"""How the causes of one force balance, or of one pair of encoders, are looked for."""
+"""How the causes of one force balance, or of one pair of encoders, are looked for: plain laws at once and by what they
+are worth. One after the other, a late command takes up the friction beside it; and what a joint leaves below its own
+floor a payload would take up, and the other joints with it."""
 
 BESIDE_LINKS = replace(JOINT, possible=beside_links)
 """The same beside links found from the data."""
-
-BESIDE_LOAD = replace(JOINT, together=True)
-"""The same beside a payload or a wrong mass, with plain laws at once and by what they are worth: what a joint leaves
-below its own floor the load would take up, and the other joints with it."""

@@ -30,7 +30,7 @@ from sher3_chain.manipulator.causes.explained import Explained, with_rivals
 from sher3_chain.manipulator.causes.lateness import LATE, OF_LAW, Late, lateness
 from sher3_chain.manipulator.causes.links import CLEARLY, clearly_less, wrong_links
 from sher3_chain.manipulator.causes.payload import centred, closes, middle, payloads
-from sher3_chain.manipulator.causes.plan import BESIDE_LINKS, BESIDE_LOAD, JOINT, bought
+from sher3_chain.manipulator.causes.plan import BESIDE_LINKS, JOINT, bought
 from sher3_chain.manipulator.evidence import ArmMotionEvidence, channel_of, channels_of, of_channel
 from sher3_chain.search.friction_in_motion import without_slow
 
@@ -83,7 +83,7 @@ def _explained(
     """
     effects = [e for e in candidates.effects if e.places == ("axis",)]
     beside = _added(evidence, loaded, loads) if loaded is not None else ()
-    plan = JOINT if not loads else BESIDE_LINKS if any(t.effect.free() is not None for t in loads) else BESIDE_LOAD
+    plan = BESIDE_LINKS if any(t.effect.free() is not None for t in loads) else JOINT
     alone: list[Attribution] = []
     for channel in (c for joint in evidence.judged for c in channels_of(joint)):
         own = of_channel(evidence, channel, beside)

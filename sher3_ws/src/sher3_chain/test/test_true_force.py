@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 from drawn_axes import drawn_axis
-from sher3_chain.axes.causes.true_force import in_true_force
+from sher3_chain.joint.true_force import in_true_force
 from sher3_diagnosis import diagnose
 from sher3_diagnosis.verdict import Cause, Interval, Parameter
 

@@ -1,4 +1,4 @@
-"""Forces of an axis whose drive gives another force than it reports, in newtons that act.
+"""Forces of a joint whose drive gives another force than it reports, in newtons that act.
 
 The balance is one of reported forces: with force = (1 + g) * reported, a friction F leaves F / (1 + g) in it, and so
 does a weight, a spring or a mass. Beside a gain that was found each of them is (1 + g) times its coefficient.
@@ -19,14 +19,15 @@ FORCEFUL = ("N", "kg")
 
 
 def in_true_force(causes: Sequence[Cause]) -> list[Cause]:
-    """Return the causes of one axis with forces and masses as they act.
+    """Return the causes with forces and masses as they act on their joints.
 
-    They stay as they are where no gain was found, or one that another mass stands in for: the forces are then right.
+    They stay as they are on a joint where no gain was found, or one that another mass stands in for: the forces are
+    then right. A controller's gain in the place of a drive's is the same force.
     """
-    told = {page.id for page in pages("axis") if page.scales == GAIN}
-    gains = [c.parameters["relative"] for c in causes if c.effect in told and not c.rivals]
-    gain = next(iter(gains), None)
-    return list(causes) if gain is None else [_acting(cause, gain) for cause in causes]
+    told = {page.id: {page.id, *page.indistinct} for page in pages("axis") if page.scales == GAIN}
+    sure = (c for c in causes if c.effect in told and told[c.effect].issuperset(c.rivals))
+    gains = {c.actuator: c.parameters["relative"] for c in sure}
+    return [_acting(cause, gains[cause.actuator]) if cause.actuator in gains else cause for cause in causes]
 
 
 def _acting(cause: Cause, gain: Parameter) -> Cause:
