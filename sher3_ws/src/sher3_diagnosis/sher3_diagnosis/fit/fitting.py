@@ -149,7 +149,8 @@ def _fit_part(data: Whitened, terms: tuple[Term, ...]) -> _Part:
     loss: dict[tuple[int, Channel], float] = {}
     for c, (a, b, energy) in pieces.items():
         held = energy - 2.0 * np.einsum("rp,rp->r", held_out, b) + np.einsum("rp,rpq,rq->r", held_out, a, held_out)
-        loss |= {(r, c): max(0.0, x) for r, x in enumerate(held.tolist()) if (r, c) in data.null_loss}
+        told = enumerate(np.fmax(held, 0.0).tolist())
+        loss |= {(r, c): x for r, x in told if (r, c) in data.null_loss}
     return _Part(terms, solved[0], held_out, loss, total)
 
 
