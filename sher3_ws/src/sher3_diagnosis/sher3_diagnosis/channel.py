@@ -85,7 +85,7 @@ class Residual:
         return 0.0 < self.free_mean < 1.0
 
     def restored(self, values: Array) -> Array:
-        """Add back what `relieved` subtracted, where a share remains that determines it."""
+        """Add to values (n, ...) the mean that `relieved` took off, where a share of it was left that tells it."""
         if not self.partly_free:
             return values
         return values + self.free_mean / (1.0 - self.free_mean) * values.mean(axis=0)

@@ -227,7 +227,7 @@ class Effect:
         raise NotImplementedError
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Return the physical parameters of a fit, SI units; default those that it `gives`, else the shape's values."""
+        """Return the parameters of coefficients (p,), SI units; default those it `gives`, else the shape's values."""
         found = iter(coefficients)
         return {name: shape[name] if name in shape else float(next(found)) for name in self.gives or shape}
 
@@ -248,7 +248,7 @@ class Effect:
         return ""
 
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
-        """Return whether a fit is physically possible; default where its first coefficient is large enough."""
+        """Return whether coefficients (p,) are physically possible; default where the first is above `above`."""
         return self.above == -math.inf or bool(coefficients[0] > self.above)
 
     def plainer(self, views: Sequence[Any], site: str, shape: Shape) -> list[Shape]:
@@ -267,7 +267,7 @@ class Effect:
         return None
 
     def unlikely(self, shape: Shape, coefficients: Array) -> bool:
-        """Return whether a fit, though possible, would rather be called another effect; default never."""
+        """Return whether coefficients (p,), though possible, are rather those of another effect; default never."""
         return False
 
     def stage_at(self, channel: Channel) -> str:

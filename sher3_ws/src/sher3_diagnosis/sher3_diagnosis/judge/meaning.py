@@ -98,7 +98,7 @@ def says_nothing(evidence: Evidence, found: Fit, index: int, cause: Cause) -> bo
 
 
 def of_no_size(term: Term, coefficients: Array, cause: Cause) -> bool:
-    """Return whether no size of a cause, or one that tells it from a simpler effect, differs from zero."""
+    """Return whether each size of a cause may be zero, or any number that tells it from a simpler effect may."""
     told = {n: p for n, p in cause.parameters.items() if p.low is not None and p.high is not None}
     sizes = [told[n] for n in sizes_of(term, coefficients) if n in told]
     beyond = [told[n] for n in term.effect.told_by if n in told]
@@ -149,7 +149,7 @@ def sizes_of(term: Term, coefficients: Array) -> list[str]:
 
 
 def linear_in(term: Term, coefficients: Array) -> list[str]:
-    """Return the parameters of a cause that are in proportion to its coefficients."""
+    """Return the parameters of a cause that are in proportion to its coefficients (p,)."""
     whole, half = _scaled(term, coefficients, 1.0), _scaled(term, coefficients, HALF)
     return [n for n, x in whole.items() if len(coefficients) and math.isclose(half[n], HALF * x, rel_tol=ALIKE)]
 

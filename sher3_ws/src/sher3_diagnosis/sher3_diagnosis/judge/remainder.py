@@ -57,7 +57,7 @@ def dominant_frequency(left: Mapping[int, Array], rate: float) -> tuple[float, f
 def position_period(evidence: Evidence, channel: Channel, left: Mapping[int, Array]) -> tuple[float, float]:
     """Return the periods per motor revolution that explain most of what is left, and the share they explain.
 
-    Both are 0 where the place is no axis or its lead is not known.
+    Both are 0 where the place is no axis or its lead is not known. `left`: (N, d) of each run, the channel's unit.
     """
     turns = []
     for r in left:
@@ -79,7 +79,7 @@ def position_period(evidence: Evidence, channel: Channel, left: Mapping[int, Arr
 def ceiling(evidence: Evidence, channel: Channel, left: Mapping[int, Array]) -> float:
     """Return the held-out closure of a free function of the inputs, of the first component of what is left.
 
-    It bounds what any static model of these inputs could close.
+    It bounds what any static model of these inputs could close. `left`: (N, d) of each run, the channel's unit.
     """
     step = max(1, sum(map(len, left.values())) // ROWS)
     rows = [evidence.views[r].inputs(channel.actuator)[evidence.data.residuals[r][channel].ok][::step] for r in left]

@@ -188,6 +188,6 @@ def _line(ax: Axes, time: Array, y: Array, color: str, label: str, width: float)
 
 
 def scale_of(y: Array) -> tuple[float, str]:
-    """Return the factor and the SI prefix with which values are drawn."""
+    """Return the factor and the SI prefix with which values (n,) are drawn: the largest is at least `LEAST` then."""
     size = float(np.nanmax(np.abs(y))) if len(y) else 1.0
     return next(((s, p) for s, p in SCALES if size * s >= LEAST), SCALES[-1])

@@ -187,6 +187,6 @@ def drawn_model(bench: Bench, ranges: Ranges, joints: Mapping[str, str], rng: np
 
 
 def force_scale(error: Array, period: float) -> float:
-    """Return a force for a trial run: any but zero for a linear joint, one that overcomes dry friction otherwise."""
+    """Return a force for a trial run from errors (windows, n): any for a linear joint, else one above dry friction."""
     duration = error.shape[1] * period
     return max(PUSH, float(np.abs(error).max()) / duration**2)

@@ -38,7 +38,7 @@ def model_of_arm(path: Path) -> Element:
 
 
 def model_of_text(text: str, label: str, path: Path | None = None) -> Element:
-    """Return the model of a text, as `model_of_arm` does of a file at `path`; `label` names it in errors."""
+    """Return the model of a text as `model_of_arm` does of a file; `label` names it; raises ExportError too."""
     if "<mujoco" in text and "<robot" not in text:
         return whole(parse_xml(text, "mujoco"), path)
     root = parse_xml(text, "robot")

@@ -102,7 +102,7 @@ def box_of(runs: Sequence[Sequence[Any]], names: Sequence[str]) -> Box:
 
 
 def of_axes(q: Array, v: Array, a: Array) -> Array:
-    """Return the laws of axes by themselves: mass, viscous and dry friction, spring and a constant force."""
+    """Return (n k, 5 k) of motions (n, k): mass, viscous and dry friction, spring and a constant of each axis."""
     n, k = q.shape
     out = np.zeros((n, k, 5 * k))
     for i in range(k):

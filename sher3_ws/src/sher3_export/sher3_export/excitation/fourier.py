@@ -55,7 +55,7 @@ def drawn(rng: np.random.Generator, joints: int, harmonics: int, seconds: float)
 
 
 def within(motion: Fourier, box: Box, t: Array) -> Fourier:
-    """Return a motion of such a size, about such a centre, that every joint meets one of its limits and none beyond."""
+    """Return a motion, at times t (n,) s, of a size and centre with which each joint just meets one of its limits."""
     q, v, a = motion.motion(t)
     room = box.high - box.low
     share = np.stack(

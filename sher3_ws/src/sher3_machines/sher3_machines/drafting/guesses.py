@@ -134,7 +134,7 @@ def in_thousandths(stamps: Array) -> bool:
 
 
 def position_unit(unit: str | None, x: Array, slides: bool = False) -> tuple[str, float, str]:
-    """Return the unit of a position, its factor, and why; `slides`: the name of the axis says so."""
+    """Return the unit of a position (n,), its factor, and why; `slides`: the name of the axis says so."""
     if unit is not None and unit in UNITS and unit not in ("count", "%", "1"):
         return unit, 1.0, NAMED
     largest = reach(x)
@@ -177,7 +177,7 @@ def scatter(x: Array) -> float:
 
 
 def count_of(x: Array) -> float | None:
-    """Return the count of an encoder: the smallest step of its signal, if most steps are whole multiples of it."""
+    """Return the count of an encoder (n,): the smallest step of its signal, if most steps are whole multiples of it."""
     steps = np.abs(np.diff(x))
     steps = steps[steps > 1e-12 * max(1.0, reach(x))]
     if len(steps) < FEWEST_STEPS:

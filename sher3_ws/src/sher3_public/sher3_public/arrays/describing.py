@@ -149,7 +149,7 @@ def _controls(
 def control_of(
     joint: str, place: int, joints: int, control: Array | None, drives: Mapping[str, Driven], source: Source
 ) -> int | None:
-    """Return the column of `control` that drives a joint, None where none does; raises InputError on a wrong width."""
+    """Return the column of `control` (n, m) that drives a joint, None for none; raises InputError on a wrong m."""
     if control is None:
         return None
     own = drives[joint].drive if joint in drives else None
@@ -182,7 +182,7 @@ def _joint(
 
 
 def resolution(x: Array) -> float:
-    """Return the count of an encoder, rad or m: its smallest step, else its scatter."""
+    """Return the count of an encoder of readings (n,), rad or m: its smallest step, else its scatter."""
     x = x[np.isfinite(x)]
     return float(f"{max(count_of(x) or scatter(x), LEAST_RESOLUTION):.6g}")
 

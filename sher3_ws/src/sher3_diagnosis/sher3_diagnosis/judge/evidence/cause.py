@@ -148,7 +148,8 @@ def free_laws(
 ) -> tuple[float, float, float]:
     """Return the mean square over the floor, per sample and component, that free laws take off what causes leave.
 
-    Of the inputs that their laws depend on; of all quantities of the place; of everything recorded.
+    Of the inputs that their laws depend on; of all quantities of the place; of everything recorded. `left` is (N, d)
+    for each run, in the channel's unit.
     """
     white = {r: x / evidence.floors[r][channel] for r, x in left.items()}
     signal = np.concatenate(list(white.values()))

@@ -10,7 +10,7 @@ from sher3_diagnosis.channel import Array
 
 
 def plain(x: NDArray[np.generic]) -> Array:
-    """Return numbers, a single row or column as a list."""
+    """Return an array as numbers; a single row (1, n) or column (n, 1) becomes (n,)."""
     y = np.asarray(x, dtype=float)
     return y.ravel() if y.ndim == 2 and 1 in y.shape else y
 
