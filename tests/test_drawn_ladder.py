@@ -5,12 +5,10 @@ import sys
 from pathlib import Path
 
 import numpy as np
-import pytest
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "bench"))
 from drawn_machines import drawn_axis, rows_of, told
 from predicts import ALIKE, HALF, predicted
-from settle_axes import odds_of_mass
 from true_arm import Motion, powerless_on
 from true_structure import powerless
 
@@ -46,10 +44,3 @@ def test_causes_foretell_the_force_in_a_motion_held_out():
     """Friction that falls with speed and a late effort: all plain columns leave a quarter of the gap."""
     found = predicted(drawn_axis(3003), drawn_axis(3003, motion=1))
     assert found.causes <= HALF * found.wrong and found.causes <= ALIKE * found.true
-
-
-def test_a_known_mass_tells_a_wrong_mass_from_a_wrong_scale():
-    """Force over what the described mass needs: 1.2, and with as much mass again 1.1 of a mass, 1.2 of a scale."""
-    assert odds_of_mass((1.2, 0.01), (1.1, 0.01), 1.0) > 0.99
-    assert odds_of_mass((1.2, 0.01), (1.2, 0.01), 1.0) < 0.01
-    assert odds_of_mass((1.2, 0.5), (1.1, 0.5), 1.0) == pytest.approx(0.5, abs=0.05)
