@@ -5,38 +5,22 @@
 
 Printed is the table of all cases, of robots with bent and with close laws, and of each plant, by the weights in force:
 once with all that is left of a gap held against its cause (`all left`), once as if each cause stood alone, and once as
-it is judged: less what is a bend of its law, beside the other causes of its gap; then log loss of the causes' odds, and
-how well what is left, less a bend or not, tells right causes from foreign ones (area under the curve), on the causes
-that leave between 2 and 20 %.
+it is judged: less what is a bend of its law, beside the other causes of its gap; with the log loss of the causes' odds.
 """
 
 from __future__ import annotations
 
 import argparse
 import time
-from collections.abc import Sequence
 from pathlib import Path
 
-import numpy as np
 from other_odds import causes_of, surprise
 from sher3_challenge.calibration.drawn import draw
 from sher3_challenge.calibration.held_out import by_plant, by_shape, groups, judged_by, middle
-from sher3_challenge.calibration.labels import answer_of
 from sher3_challenge.calibration.observe import stored, without_evidence
 from sher3_challenge.calibration.table import rates, written
 from sher3_challenge.plants.level import SHAPE, Level
-from sher3_diagnosis.finding import LIBRARY, OUTSIDE
 from sher3_diagnosis.judge.calibration.calibration import in_force
-from sher3_diagnosis.judge.evidence.scales import strange
-
-DOUBTFUL = (0.02, 0.20)
-"""Shares left of which both right and foreign causes are known."""
-
-
-def area(right: Sequence[float], foreign: Sequence[float]) -> float:
-    """Return the share of pairs of a right and a foreign cause of which the right one has less."""
-    return float(np.mean([(r < f) + 0.5 * (r == f) for r in right for f in foreign]))
-
 
 PLANTS = ("lumped", "tables", "mujoco")
 
@@ -71,21 +55,6 @@ def main() -> None:
         judged = {group: judged_by(in_force(), rows) for group, rows in own.items()}
         print(f"{name}: {surprise(causes_of(judged['all']))}")
         print(written({group: rates(j) for group, j in judged.items()}) + "\n")
-    whole = {(o.plant, o.case): o for o in found if not o.without}
-    causes = [
-        (x["numbers"], answer_of(o, x, whole[o.plant, o.case]))
-        for o in found
-        for x in o.items
-        if x["index"] is not None
-    ]
-    near = [(n, a) for n, a in causes if DOUBTFUL[0] < n["left"] < DOUBTFUL[1]]
-    right, foreign = ([n for n, a in near if a == answer] for answer in (LIBRARY, OUTSIDE))
-    if right and foreign:
-        told = area([n["left"] for n in right], [n["left"] for n in foreign])
-        better = area(*([strange(n) for n in some] for some in (right, foreign)))
-        print(
-            f"area under the curve: left {told:.2f}, strange {better:.2f} ({len(right)} right, {len(foreign)} foreign)"
-        )
 
 
 if __name__ == "__main__":
