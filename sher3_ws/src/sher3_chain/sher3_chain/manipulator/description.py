@@ -98,6 +98,11 @@ class ManipulatorDescription(ChainDescription):
         """The joints: they are recorded like axes."""
         return self.joints
 
+    @property
+    def told(self) -> frozenset[str]:
+        """Joints whose command stands for an effort that nobody measured."""
+        return frozenset(j.name for j in self.joints if j.signals.effort is None and j.signals.command is not None)
+
     def servos(self, judged: Collection[str]) -> dict[str, float]:
         """Return joint -> gain of the joints whose servo has a stated law and whose effort was measured."""
         if self.coupling is not None:

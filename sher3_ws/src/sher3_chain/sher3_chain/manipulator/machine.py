@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -28,7 +28,14 @@ from sher3_chain.joint.own_unit import RECORDED, in_own_unit
 from sher3_chain.joint.record import AxesRun
 from sher3_chain.joint.true_force import in_true_force
 from sher3_chain.manipulator.causes.confounding import GAIN, PAYLOAD, WEIGHT, confounding_notes, same_force
-from sher3_chain.manipulator.causes.lateness import LATE, late_efforts, timing_notes, with_closure, with_late_readings
+from sher3_chain.manipulator.causes.lateness import (
+    LATE,
+    acting_late,
+    late_efforts,
+    timing_notes,
+    with_closure,
+    with_late_readings,
+)
 from sher3_chain.manipulator.causes.links import of_a_sum
 from sher3_chain.manipulator.causes.payload import about_its_own
 from sher3_chain.manipulator.causes.plan import JOINT
@@ -103,7 +110,8 @@ class Manipulator(Chain[ArmMotionEvidence]):
         if any(gap.significant for part in evidence for gap in localise(part)):
             return [law for law in laws if law.closed]
         late = [] if computed(LATE).id in without else [x for part in evidence for x in late_efforts(part)]
-        return [*laws, *late]
+        told = self.described.told
+        return [*laws, *(replace(x, causes=[acting_late(c, told) for c in x.causes]) for x in late)]
 
     def plan(self, evidence: ArmMotionEvidence) -> SearchPlan:
         """Return how the causes of each joint are looked for."""
@@ -135,7 +143,10 @@ class Manipulator(Chain[ArmMotionEvidence]):
         weak = {j.name for j in self.described.joints if j.by_its_law}
         alike = {e.id: (e.id, *e.indistinct) for e in self.effects(evidence)}
         causes = [with_hidden(c, alike[c.effect]) if c.actuator in weak and c.effect in alike else c for c in causes]
-        causes = in_true_force(causes)
+        commanded = {
+            j.name for j in self.described.joints if j.signals.effort is None and j.signals.command is not None
+        }
+        causes = [acting_late(cause, commanded) for cause in in_true_force(causes)]
         own, same = evidence.shares, same_force()
         return evidence, [with_hidden(in_own_unit(c, RECORDED), same) if c.actuator in own else c for c in causes]
 

@@ -1,5 +1,7 @@
 """Efforts that are late beside dry friction: a delay of 5 ms is below the floor of a SCARA, and plain by its shape."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scaras import NAMES, machine, record
@@ -11,6 +13,25 @@ MS = 1e-3
 
 def verdict(path, rate, late):
     return diagnose(machine(path / "scara.urdf", rate), [record(rate, DRY, late)]).verdict
+
+
+def commanded(path, rate, late):
+    """Return the verdict where what the drives were told was logged, and no effort."""
+    scara, run = machine(path / "scara.urdf", rate), record(rate, DRY, late)
+    joints = []
+    for joint in scara.described.joints:
+        known = joint.signals.model_copy(update={"command": joint.signals.effort, "effort": None})
+        joints.append(joint.model_copy(update={"signals": known}))
+    signals = {j: {"command" if k == "effort" else k: x for k, x in own.items()} for j, own in run.signals.items()}
+    told = replace(scara, described=scara.described.model_copy(update={"joints": tuple(joints)}))
+    return diagnose(told, [replace(run, signals=signals)]).verdict
+
+
+def test_what_was_told_before_the_motion_is_a_command_that_acts_late(tmp_path):
+    causes = {c.actuator: c for c in commanded(tmp_path, 400.0, (0.0, -9 * MS, 0.0)).causes if c.family == "timing"}
+    assert causes.keys() == {"elbow"} and causes["elbow"].effect == "command_delay"
+    delay = causes["elbow"].parameters["delay"]
+    assert delay.low < 9 * MS < delay.high and delay.value > 0.0
 
 
 def told(found):

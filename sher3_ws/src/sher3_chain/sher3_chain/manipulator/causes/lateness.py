@@ -8,7 +8,7 @@ force, so that none of them is taken for it.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -97,6 +97,22 @@ def with_late_readings(cause: Cause) -> Cause:
     """Return a cause with late readings as rival of a late command, where a law stands for the effort."""
     rivals = [*cause.rivals, *([computed(LATE).id] if cause.effect == computed(OF_LAW).id else [])]
     return cause.model_copy(update={"rivals": rivals})
+
+
+def acting_late(cause: Cause, told: Collection[str]) -> Cause:
+    """Return an effort that comes before its motion as a command that acts late, where it is what the drive was told.
+
+    Args:
+        cause: of a joint.
+        told: joints whose command stands for the effort, which nobody measured.
+    """
+    early = cause.parameters.get(LATE)
+    if cause.actuator not in told or early is None or early.value >= 0.0 or early.low is None or early.high is None:
+        return cause
+    page = computed(OF_LAW)
+    late = early.model_copy(update={"value": -early.value, "low": -early.high, "high": -early.low})
+    rivals = [*cause.rivals, cause.effect]
+    return cause.model_copy(update={"effect": page.id, "parameters": {OF_LAW: late}, "rivals": rivals})
 
 
 def timing_notes(causes: Sequence[Cause]) -> list[str]:
