@@ -138,7 +138,8 @@ def gather_arm_motion(
         inertias = identified_inertias(kept, model, judged)
     unknown = [j.name for j in described.joints if j.gain == "unknown" and j.name in judged]
     shares = {name: found[name].turned() for name in unknown}
-    factors = np.array([shares[j.name].value if j.name in shares else 1.0 for j in described.joints])
+    modelled = shares if inertias is None else {}  # those found from the data are in the unit of the effort
+    factors = np.array([modelled[j.name].value if j.name in modelled else 1.0 for j in described.joints])
     nominal = (model, factors) if inertias is None else (inertias.model(model), factors, inertias.at(described.joints))
     views = plain if inertias is None and not shares else seen_by(*nominal)
     residuals = [_residuals(view, judged) for view in views]

@@ -45,15 +45,16 @@ class Share(NamedTuple):
 
         With a stated gain a wrong sign alone makes the share about minus one; another one below zero is a force that
         the model lacks, such as that of a payload on a light joint. Of a link that the model hardly has the share is
-        any number, and friction tells the sign. A spring that the model lacks may turn the share of an inertia about;
-        friction that takes work as recorded then says that nothing was turned.
+        any number, and friction tells the sign. A spring that the model lacks may turn the share of an inertia about,
+        and an arm that hangs upside down that of all weights; friction that takes work as recorded then says that
+        nothing was turned.
         """
         if not self.told or (stated and abs(self.value) > SLIPPED):
             return int(self.work > LEAST_EXCITED) - int(self.work < -LEAST_EXCITED)
         if not self.backwards:
             return 1
-        about_one = 1.0 / WRONG_SIGN < -self.value < WRONG_SIGN and self.work < LEAST_EXCITED
-        return -1 if not stated or about_one else 0
+        turned = not stated or 1.0 / WRONG_SIGN < -self.value < WRONG_SIGN
+        return -1 if turned and self.work < LEAST_EXCITED else 0
 
     def off(self, most: float) -> bool:
         """Return whether the share is surely more than `most`, or less than a fifth."""

@@ -126,6 +126,15 @@ def test_friction_tells_a_sign_where_the_model_does_not(share, work, sense):
     assert Share(share, 0.01, share < 0.0, work).sense(stated=True) == sense
 
 
+def test_an_arm_that_hangs_upside_down_turns_no_current(path):
+    """Its weights have the other sign than the model's, whatever an ampere is; friction takes work as recorded."""
+    assert Share(-0.11, 0.01, True, 9.0).sense(stated=False) == 0
+    upside = needed(Q, V, A) - 2.0 * needed(Q, 0.0 * V, 0.0 * A)
+    both = {joint: {"gain": "unknown"} for joint in ("lift", "swing")}
+    found = verdict(path, (upside + friction(V, (8.0, 2.0))) / 2.5, joint=both)
+    assert not any("opposite sign" in note for note in found.notes)
+
+
 def test_a_spring_stronger_than_the_inertia_turns_no_effort(path):
     """60 N/m on six kilograms that swing at 0.2 Hz: the force is in proportion to minus the acceleration."""
     effort = needed(Q, V, A) + friction(V, (8.0, 0.5)) + np.stack([60.0 * (Q[:, 0] - 0.1), 0.0 * Q[:, 1]], axis=1)
@@ -213,3 +222,14 @@ def test_identified_inertias_leave_the_friction(path):
     assert {c.effect for c in found.causes} == {"coulomb_friction"}
     assert values(found)["coulomb_friction", "lift", "force"] == pytest.approx(8.0, rel=0.06)
     assert any("not looked for" in n for n in found.notes)
+
+
+def test_inertias_found_of_amperes_need_no_newton_metres(path):
+    """2.5 N m (N) an ampere, which nobody states: bodies in the unit of the effort, and friction in it."""
+    text = described(path).model and path.read_text().replace('mass value="2.0"', 'mass value="1.4"')
+    amperes = (needed(Q, V, A) + friction(V, (8.0, 0.5))) / 2.5
+    both = {joint: {"gain": "unknown"} for joint in ("lift", "swing")}
+    found = verdict(path, amperes, text=text, inertias="identified", joint=both)
+    assert {c.effect for c in found.causes} == {"coulomb_friction"}
+    assert values(found)["coulomb_friction", "lift", "force"] == pytest.approx(3.2, rel=0.06)
+    assert values(found)["coulomb_friction", "swing", "force"] == pytest.approx(0.2, rel=0.1)

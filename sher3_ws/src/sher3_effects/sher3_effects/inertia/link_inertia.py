@@ -23,7 +23,7 @@ class LinkInertia(Page):
 
     id, family, stage = "link_inertia", "inertia", "motor_mechanics"
     inputs = ("acceleration", "weight", "posture")
-    scales = "payload"
+    scales = "weight"
     kinds: ClassVar[tuple[str, ...]] = ("joint",)
     places = ("link",)
     best = Best("steps", "accelerations separate mass from weight")

@@ -22,7 +22,7 @@ from sher3_diagnosis.fit.solving import solve
 from sher3_diagnosis.fit.term import again
 from sher3_diagnosis.fit.whitened import Whitened
 from sher3_diagnosis.quantify.jackknife import standard_error
-from sher3_diagnosis.thresholds import NEEDED, PRICE
+from sher3_diagnosis.thresholds import JACKKNIFE, NEEDED, PRICE
 from sher3_diagnosis.verdict import Cause
 
 from sher3_chain.manipulator.evidence import ArmMotionEvidence, channel_of
@@ -42,15 +42,18 @@ OF_A_SUM = "in a sum over links"
 Law = tuple[Effect, str, Shape]
 
 
-def wrong_links(evidence: ArmMotionEvidence, page: Effect, laws: Sequence[Law]) -> list[Law]:
+def wrong_links(
+    evidence: ArmMotionEvidence, page: Effect, laws: Sequence[Law], others: Sequence[Fit] = ()
+) -> list[Law]:
     """Return the links that are worth their numbers beside plain laws of every joint, with what was found of them.
 
-    None where they do not leave clearly less than the plain laws alone.
+    None where they do not leave clearly less than the plain laws alone, or than one of the `others`.
 
     Args:
         evidence: of the arm.
         page: of the inertial parameters of a link, found beforehand.
         laws: plain ones of every joint, with their places and shapes.
+        others: fits that explain as well, with fewer numbers.
     """
     free = page.free()
     if free is None:
@@ -64,6 +67,9 @@ def wrong_links(evidence: ArmMotionEvidence, page: Effect, laws: Sequence[Law]) 
         if i == 0 and not _far_less(after, left, loaded_by(found, page)):
             return []
         left = after
+    if not all(_far_less(left, level(evidence, other), loaded_by(found, page)) for other in others):
+        return []
+    found = _sized(alike, found, page)
     at = [i for i, term in enumerate(found.terms) if term.effect.id == page.id]
     return [(page, found.terms[i].site, page.found(_measured(found, i))) for i in at]
 
@@ -88,14 +94,6 @@ def worthy(evidence: Evidence, terms: Sequence[Term]) -> Fit:
         fewer = fit(evidence.data, [t for t in found.terms if t is not term])
         found = fewer if fewer.total - price(term) < found.total else found
     return found
-
-
-def clearly_less(evidence: ArmMotionEvidence, found: Fit, before: Fit, page: Effect) -> bool:
-    """Return whether a fit with wrong links leaves clearly less than another one, down to the floor.
-
-    All joints that those links load count alike; the others gain nothing by them.
-    """
-    return _far_less(level(evidence, found), level(evidence, before), loaded_by(found, page))
 
 
 def loaded_by(found: Fit, page: Effect) -> set[Channel]:
@@ -136,10 +134,23 @@ def _measured(found: Fit, index: int) -> dict[str, Measured]:
     return {name: Measured(float(x), float(standard_error(without))) for name, x, without in each}
 
 
+def _sized(evidence: Evidence, found: Fit, page: Effect) -> Fit:
+    """Return a fit of links without the numbers whose intervals hold zero."""
+    terms = list[Term]()
+    for i, term in enumerate(found.terms):
+        if term.effect.id == page.id:
+            sized = {n: 1.0 for n, x in _measured(found, i).items() if abs(x.value) > JACKKNIFE * x.error}
+            term = make_term(evidence.data, term.effect, term.site, sized)
+        if term.channels:
+            terms.append(term)
+    return fit(evidence.data, terms)
+
+
 def _entered(evidence: Evidence, page: Effect, plain: Sequence[Term]) -> list[Term]:
     """Return the terms of the links by what they are worth, the first of most, while one is worth its numbers."""
     names = page.gives
-    whole = {link: make_term(evidence.data, page, link, dict.fromkeys(names, 1.0)) for link in evidence.places["link"]}
+    every = {link: make_term(evidence.data, page, link, dict.fromkeys(names, 1.0)) for link in evidence.places["link"]}
+    whole = {link: term for link, term in every.items() if term.channels}  # what no judged joint carries shows nowhere
     normal, right = _normal(evidence, [*plain, *whole.values()])
     columns = list(range(sum(t.width for t in plain)))
     first = {link: len(columns) + len(names) * i for i, link in enumerate(whole)}

@@ -37,12 +37,11 @@ class Load(NamedTuple):
     felt: bool
 
 
-def payloads(evidence: ArmMotionEvidence, candidates: Candidates) -> list[Load]:
-    """Return each law of a load at the link that needs it most, beside plain laws of all joints.
+def payloads(evidence: ArmMotionEvidence, candidates: Candidates, plain: Sequence[Term]) -> list[Load]:
+    """Return each law of a load at the link that needs it most, beside `plain` laws of all joints.
 
     None of a law that is not needed.
     """
-    plain = beside(evidence, candidates)
     base, found = without_impossible(evidence, fit(evidence.data, plain)), list[Load]()
     for page in on_links(candidates):
         links = [link for link in evidence.places["link"] if page.shapes(evidence.views, link)]

@@ -2,19 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
 from sher3_diagnosis.attribute.candidates import Candidates, complexity, price
 from sher3_diagnosis.attribute.plan import SearchPlan
 from sher3_diagnosis.attribute.rivals import without_term
+from sher3_diagnosis.effect import Effect
 from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.fit.fitting import Fit, Term, fit
 from sher3_diagnosis.thresholds import NEEDED
 
+from sher3_chain.manipulator.causes.confounding import GAIN
 from sher3_chain.search.away_from_reversals import borne_out
 from sher3_chain.search.one_joint import of_one_joint
 from sher3_chain.thresholds import CAUSES_OF_JOINT, CONFOUNDED
+
+LIKE_WEIGHT = "spring"
+"""Family of laws of a joint that do what other weights of bodies do, as long as the other joints follow its own."""
 
 
 def spent(found: Fit) -> float:
@@ -71,6 +76,14 @@ def beside_links(trial: Fit) -> bool:
     """Return whether a trial is possible beside links found from the data: a share of what the model says is not."""
     term = trial.terms[-1]
     return not term.effect.of_model(term.shape) and of_joint(trial)
+
+
+def laws_beside_links(effects: Iterable[Effect]) -> list[Effect]:
+    """Return the laws that a joint may have beside links found from the data.
+
+    Neither a gain, a share of what the model says, nor a spring: both stand for weights that the links have by now.
+    """
+    return [e for e in effects if e.family != LIKE_WEIGHT and e.scales != GAIN]
 
 
 JOINT = SearchPlan(

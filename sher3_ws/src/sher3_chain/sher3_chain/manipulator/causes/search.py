@@ -28,9 +28,9 @@ from sher3_effects import computed
 from sher3_chain.manipulator.causes.confounding import GAIN
 from sher3_chain.manipulator.causes.explained import Explained, with_rivals
 from sher3_chain.manipulator.causes.lateness import LATE, OF_LAW, Late, lateness
-from sher3_chain.manipulator.causes.links import CLEARLY, clearly_less, wrong_links
-from sher3_chain.manipulator.causes.payload import centred, closes, middle, payloads
-from sher3_chain.manipulator.causes.plan import BESIDE_LINKS, JOINT, bought
+from sher3_chain.manipulator.causes.links import CLEARLY, wrong_links
+from sher3_chain.manipulator.causes.payload import beside, centred, closes, middle, payloads
+from sher3_chain.manipulator.causes.plan import BESIDE_LINKS, JOINT, bought, laws_beside_links
 from sher3_chain.manipulator.evidence import ArmMotionEvidence, channel_of, channels_of, of_channel
 from sher3_chain.search.friction_in_motion import without_slow
 
@@ -43,35 +43,45 @@ TIMING = "timing"
 def causes_of_arm(evidence: ArmMotionEvidence, candidates: Candidates, say: Say) -> Attribution:
     """Choose the causes of an arm in motion, with their rivals; none where no joint has a gap.
 
-    A load that one joint alone feels is taken where that joint's own laws leave clearly more.
+    A load that one joint alone feels is taken where that joint's own laws leave clearly more. None is looked for where
+    links with other bodies leave far less beside plain laws, and whatever single joints may do costs more.
     """
     if not down_to_floor(evidence.channels, evidence, evidence.null()):
         return Attribution(evidence.null(), (), (), nuisance=len(evidence.nuisance))
     best, others = _explained(evidence, candidates, (), None, say), list[Explained]()
-    for load in payloads(evidence, candidates):
+    plain = beside(evidence, candidates)
+    loads = payloads(evidence, candidates, plain)
+    linked = _linked(evidence, candidates, [fit(evidence.data, plain), *(load.fit for load in loads)], say)
+    if linked is not None and linked.cost < best.cost:
+        return with_rivals(evidence, candidates, linked, ())
+    for load in loads:
         other = _explained(evidence, candidates, load.fit.terms[-1:], load.fit, say)
         better = other.cost < (1.0 if load.felt else CLEARLY) * best.cost and closes(evidence, other.fit)
         best, others = (other, [*others, best]) if better else (best, [*others, other])
-    linked = _linked(evidence, candidates, best, say)
-    return with_rivals(evidence, candidates, *((best, others) if linked is None else (linked, ())))
+    return with_rivals(evidence, candidates, best, others)
 
 
-def _linked(evidence: ArmMotionEvidence, candidates: Candidates, best: Explained, say: Say) -> Explained | None:
-    """Return the causes beside links with wrong inertial parameters; None where links do not leave clearly less.
+def _linked(evidence: ArmMotionEvidence, candidates: Candidates, others: Sequence[Fit], say: Say) -> Explained | None:
+    """Return the causes beside links with wrong inertial parameters; None where fewer numbers, `others`, do as well.
 
-    Plain laws of the joints come with the links; richer ones are looked for in what is left.
+    The links are found beside plain laws of the joints, then what each joint has beside them, then the links again: a
+    law that no joint needs by itself has no part in them.
     """
     page = next((e for e in candidates.effects if e.free() is not None), None)
     if page is None:
         return None
     plain = [e for e in candidates.effects if e.plain and e.scales != GAIN and not BODILY & set(e.inputs)]
     laws = [(e, j, middle(e, evidence, j)) for j in evidence.judged for e in plain if e.shapes(evidence.views, j)]
-    links = wrong_links(evidence, page, laws)
+    links = wrong_links(evidence, page, laws, others)
     if not links:
         return None
     loads = [candidates.term(*link) for link in links]
-    other = _explained(evidence, candidates, loads, fit(evidence.data, loads), say)
-    return other if clearly_less(evidence, other.fit, best.fit, page) else None
+    found = _explained(evidence, candidates, loads, fit(evidence.data, loads), say)
+    first = len(evidence.nuisance)
+    joints = found.fit.terms[first + len(loads) :]
+    again = wrong_links(evidence, page, [(t.effect, t.site, t.shape) for t in joints]) or links
+    whole = fit(evidence.data, [*evidence.nuisance, *(candidates.term(*link) for link in again), *joints])
+    return min(found, replace(found, fit=bought(evidence, whole, first + len(again))), key=lambda x: x.cost)
 
 
 def _explained(
@@ -83,7 +93,8 @@ def _explained(
     """
     effects = [e for e in candidates.effects if e.places == ("axis",)]
     beside = _added(evidence, loaded, loads) if loaded is not None else ()
-    plan = BESIDE_LINKS if any(t.effect.free() is not None for t in loads) else JOINT
+    linked = any(t.effect.free() is not None for t in loads)
+    effects, plan = (laws_beside_links(effects), BESIDE_LINKS) if linked else (effects, JOINT)
     alone: list[Attribution] = []
     for channel in (c for joint in evidence.judged for c in channels_of(joint)):
         own = of_channel(evidence, channel, beside)
