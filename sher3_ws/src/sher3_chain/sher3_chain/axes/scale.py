@@ -10,7 +10,6 @@ from collections.abc import Sequence
 import numpy as np
 from sher3_diagnosis.channel import Array
 
-from sher3_chain.axes.identification.identify import BUILDS_UP_OF_TRAVEL
 from sher3_chain.axes.view import AxisView
 from sher3_chain.joint.description import Axis, Gravity
 from sher3_chain.joint.own_unit import OWN_UNITS
@@ -58,7 +57,5 @@ def _equations(view: AxisView, force: Array) -> tuple[Array, Array]:
     """Columns (n, 4): a known force, velocity, direction, one; and the recorded effort (n,)."""
     ok, run = view.in_motion, view.run
     assert run.effort is not None
-    reach = max(BUILDS_UP_OF_TRAVEL * view.axis(view.described.name).travel, view.described.encoder_resolution)
-    direction = run.to_grid(view.sliding(0, reach)[:, None])[:, 0]
-    x = np.column_stack([force, view.velocity[:, 0], direction, np.ones(len(force))])
+    x = np.column_stack([force, view.velocity[:, 0], view.direction, np.ones(len(force))])
     return x[ok], run.to_grid(run.effort)[ok, 0]

@@ -11,11 +11,12 @@ from sher3_diagnosis.filter import EDGE, settled
 from sher3_effects.operators import second_difference
 from sher3_effects.view import NominalAxis
 
-from sher3_chain.chain.view import AROUND_STOP, LEAD_OF_STROKE, SLIP, ChainView, Loads
+from sher3_chain.chain.view import AROUND_STOP, BUILDS_UP, LEAD_OF_STROKE, SLIP, ChainView, Loads
 from sher3_chain.joint.description import Axis
 from sher3_chain.readings.noise import noise_of
 from sher3_chain.readings.orders import orders_in
 from sher3_chain.readings.signals import AxisSignals
+from sher3_chain.thresholds import SLOW
 
 SEEN = 5.0
 """Standard deviations of a noise that nothing passes by chance."""
@@ -26,6 +27,8 @@ SPREAD = 0.5
 REST_SPREADS = 2
 """Samples of the grid by which the filter spreads what friction does at rest, and in motion: 0.8 of a period of the
 cut-off. By one sample a stop of a finely resolved axis still leaves thousands of floors."""
+STRAIGHT = 1e-3
+"""Share of an effort's power that a line over the place leaves of a controller's: an inertia leaves far more."""
 ENOUGH = 0.5
 """Share of the samples that must be in motion, or away from such reversals, for the others to be left out."""
 
@@ -71,8 +74,22 @@ class AxisView(ChainView):
 
     @property
     def hangs(self) -> bool:
-        """Whether the axis turns and its description says nothing of a weight at an arm."""
-        return self.described.swings
+        """Whether the axis turns and nothing is said of a weight at an arm, nor hides one."""
+        return self.described.swings and not self.fed_back
+
+    @cached_property
+    def fed_back(self) -> bool:
+        """Whether the effort in motion is a straight line of the place that falls: the answer of a controller.
+
+        About one set-point it is exact, and hides what the place itself asks for: with a spring or a weight beside it,
+        a force balance is met by the mirror image of the controller, and tells no mass.
+        """
+        run, ok = self.run, self.in_fast_motion
+        if run.effort is None or ok.sum() < 2:
+            return False
+        q, u = self.position[ok, 0], run.to_grid(run.effort)[ok, 0]
+        q, u = q - q.mean(), u - u.mean()
+        return bool(q @ u < 0.0 and u @ u - (q @ u) ** 2 / (q @ q) < STRAIGHT * (u @ u))
 
     def lead(self, site: str) -> float:
         """Return the travel per motor revolution, m or rad; what stands for it where it is not known."""
@@ -171,6 +188,20 @@ class AxisView(ChainView):
         inside = self.run.inner & self.released & settled(told, REST_SPREADS)
         clear, told_by_force = inside & self.clear, not (self.described.free or self.described.servo)
         return clear if clear.sum() >= ENOUGH * inside.sum() and told_by_force else inside
+
+    @cached_property
+    def in_fast_motion(self) -> Mask:
+        """(g,) True where the axis moves fast enough for friction to have its sign and to be built up."""
+        speed, ok = np.abs(self.velocity[:, 0]), self.in_motion
+        return ok & (speed > SLOW * np.sqrt(np.mean(speed[ok] ** 2))) if ok.any() else ok
+
+    @cached_property
+    def direction(self) -> Array:
+        """Sense of the motion (g,), as dry friction has it: it builds up over a part of the lead, or of the travel."""
+        nominal = self._nominal
+        over = nominal.lead if nominal.lead_known else LEAD_OF_STROKE * nominal.travel
+        reach = max(BUILDS_UP * over, self.described.encoder_resolution)
+        return np.asarray(self.run.to_grid(self.sliding(0, reach)[:, None])[:, 0])
 
     @cached_property
     def at_a_stop(self) -> Mask:

@@ -29,6 +29,23 @@ def test_the_mass_is_found_beside_whatever_resists(more):
     assert low <= mass <= high
 
 
+def test_a_controller_about_one_set_point_is_no_spring():
+    """Its effort is a falling line of the place: with a spring beside it the force balance needs no mass at all."""
+    x, v, rows = 0.0, 0.0, []
+    for k in range(4000):
+        read = 1e-6 * round(x / 1e-6)
+        u = 400.0 * ((0.1 if k > 500 else 0.0) - read)
+        rows.append((u, read))
+        for _ in range(10):
+            v += 2e-4 * (u - 12.0 * v) / 7.0
+            x += 2e-4 * v
+    view = seen(*np.array(rows).T)
+    mass, _ = identify_mass([view])
+    assert view.fed_back and mass == pytest.approx(7.0, rel=0.02)
+    force, q = swing(7.0, dry=3.0)
+    assert not seen(force + 100.0 * q, q).fed_back and not seen(force, q).fed_back
+
+
 def test_motion_at_constant_speed_tells_no_mass():
     noise = np.random.default_rng(0).normal(size=len(CLOCK))
     with pytest.raises(MachineError, match="does not tell its mass"):

@@ -67,6 +67,16 @@ def test_a_log_that_is_slower_than_its_controller(rows):
     assert {"coulomb_friction", "viscous_friction"} <= set(effects(verdict))
 
 
+@pytest.mark.parametrize("rows", [2, 3, 4, 5])
+def test_a_slower_log_of_a_speed_over_two_periods(rows):
+    """A controller that takes its speed over two of its periods is late by one: 1/2, 1/3, ... of the log's period."""
+
+    def calm(e, v):
+        return KP * e[-1] - KD * 0.5 * (v[-1] + v[-2] if len(v) > 1 else v[-1])
+
+    assert not of_controller(verdict_of(controlled(calm)[::rows], rows * PERIOD, held=False))
+
+
 @pytest.mark.parametrize("share", [0.8, 0.95, 1.3])
 def test_another_gain(share):
     verdict = verdict_of(controlled(lambda e, v: share * as_stated(e, v)))

@@ -23,7 +23,7 @@ from sher3_machines.drafting.guesses import (
     travel,
 )
 from sher3_machines.drafting.names import DRIVING, POSITION, named, words_of
-from sher3_machines.drafting.roles import SIGNALS, TOLD, Place, moves, once, placed, together, values_of
+from sher3_machines.drafting.roles import SIGNALS, TOLD, Place, moves, once, paired, placed, together, values_of
 from sher3_machines.drafting.speeds import told_by_speed
 from sher3_machines.errors import MachineError
 from sher3_machines.intake.fields import TIME_UNITS, VELOCITIES
@@ -96,7 +96,7 @@ def drafted(path: Path, tables: Tables, rate: float | None, guesses: list[str], 
     period = 1.0 / rate if rate else period_of(tables[str(clock)]) * TIME_UNITS[time["unit"]]
     roles = placed(tables, clock, guesses, held)
     groups, left = together(roles)
-    groups = once(groups, tables, guesses)
+    groups = paired(once(groups, tables, guesses), tables, guesses)
     known = {name for name, _ in roles}
     left += [n for n, x in tables.items() if n not in known and n != clock and moves(x)]
     axes = [_axis(axis, signals, tables, period, guesses) for axis, signals in groups.items()]
@@ -106,7 +106,7 @@ def drafted(path: Path, tables: Tables, rate: float | None, guesses: list[str], 
     if not axes:
         raise MachineError(
             f"{path}: no column looks like a position",
-            value=", ".join(sorted(tables)[:LISTED]),
+            value=", ".join(list(tables)[:LISTED]),
             limit="names with position, pos, q, angle, encoder",
             remedy="give their names in order, an empty one for what is no signal: --names t,position,,effort; or "
             "write the description by hand (`column: c1`; `column: data, index: 1` of a matrix); a force sensor by "

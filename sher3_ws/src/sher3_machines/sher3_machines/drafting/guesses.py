@@ -69,7 +69,7 @@ def clock_of(tables: Tables, guesses: list[str]) -> str:
         raise MachineError(f"{stamps!r} does not grow", value=ends, limit="stamps that grow", remedy=remedy)
     raise MachineError(
         "no column looks like a time",
-        value=", ".join(sorted(tables)[:12]) or "no column of numbers",
+        value=", ".join(list(tables)[:12]) or "no column of numbers",
         limit="a growing column named t, time or stamp",
         remedy="name it so (--names t,q,i names all columns in order), or state the rate of the samples, Hz: --rate "
         "500 (`time: {rate: 500}` in a description; a column of a matrix is `time: {column: data, index: 0}`); a "

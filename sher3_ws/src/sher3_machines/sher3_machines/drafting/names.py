@@ -21,9 +21,9 @@ def vocabulary(text: str) -> frozenset[str]:
 
 
 POSITION = vocabulary(
-    "position positions pos posn q qpos theta angle angles ang encoder enc lage weg winkel qm x dist displacement "
-    "displ stroke gap hub verschiebung schrittzähler steps schritte thetam posición posicion posição posizione ángulo "
-    "angulo"
+    "position positions pos posn q qpos theta phi psi angle angles ang encoder enc lage weg winkel qm x z dist "
+    "displacement displ stroke gap hub verschiebung schrittzähler steps schritte thetam posición posicion posição "
+    "posizione ángulo angulo"
 )
 VELOCITY = vocabulary(
     "velocity velocities vel speed qd dq omega qdot qvel gyro drehzahl geschwindigkeit rate dot thetadot xdot "
@@ -93,7 +93,7 @@ CAPITAL = re.compile(r"(?<=[a-z])(?=[A-Z][a-z]+$)")
 """Where the last word of a name begins with a capital: `wheelSpeedRpm`."""
 ENTRY = re.compile(r"[A-Za-z]{0,5}[ _]?\d{1,2}|[xyz]")
 """What brackets hold that is no unit but an entry: `POSITIONS (J1)`, `FORCE (x)`."""
-SHORT = vocabulary("x i u n d q t")
+SHORT = vocabulary("x z i u n d q t")
 """Words of one letter: beside a longer word for the quantity they are the name of the axis."""
 FORCEFUL = EFFORT | CURRENT | COMMAND | APPLIED
 """Words beside which a single letter at the end is a unit: `force_N`, `iq_A`, `u_V`; `enc_A` is the encoder of A."""

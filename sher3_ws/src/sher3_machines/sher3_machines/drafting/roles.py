@@ -16,12 +16,15 @@ from sher3_machines.drafting.names import (
     DERIVED,
     DRIVING,
     FORCES,
+    IGNORED,
     MEASURED,
     MODELLED,
+    PLACES,
     POSITION,
     VELOCITY,
     counts_samples,
     named,
+    vocabulary,
     words_of,
 )
 from sher3_machines.intake.spelling import bare, table_of
@@ -40,6 +43,10 @@ LAST_NUMBER = re.compile(r"(?P<stem>.*?)(?P<number>\d+)")
 """Name of an axis that ends in a number."""
 ROUNDED = 1e-5
 """Share of the travel by which two columns of one reading differ at most: they were printed with five digits."""
+MEMBERS = vocabulary("joint joints axis axes motor motors wheel wheels left right l r leg arm")
+"""Words for a part of a machine that moves by itself."""
+TOGETHER = 0.999
+"""Correlation of two places from which they are readings of one axis: play and springs leave some thousandths."""
 EVERY = "*"
 """Axis of a signal that all axes share: one speed is asked of both wheels."""
 
@@ -116,11 +123,18 @@ def _living(
 
 
 def with_output(placed: Mapping[Place, tuple[str, str]], tables: Tables) -> dict[Place, tuple[str, str]]:
-    """Return the signals with a column `y` as the position, where none was recorded and another column drives: `u`."""
+    """Return the signals with a position where no name says one.
+
+    It is a column `y`, where another column drives, `u`; else every column in a unit of a place.
+    """
     signals = {signal for signal, _ in placed.values()}
-    if signals & {"position", "load", "velocity"} or "command" not in signals or "y" not in tables:
+    if signals & {"position", "load", "velocity"}:
         return dict(placed)
-    return {**placed, ("y", None): ("position", "")}
+    if "command" in signals and "y" in tables:
+        return {**placed, ("y", None): ("position", "")}
+    told = {name: named(name) for name, x in tables.items() if x.ndim == 1 and (name, None) not in placed and moves(x)}
+    places = {(n, None): ("position", w.axis or bare(n)) for n, w in told.items() if w.unit in PLACES}
+    return {**placed, **{p: what for p, what in places.items() if not set(words_of(bare(p[0]))) & IGNORED}}
 
 
 def with_drive(placed: Mapping[Place, tuple[str, str]]) -> dict[Place, tuple[str, str]]:
@@ -211,6 +225,24 @@ def once(groups: dict[str, dict[str, Place]], tables: Tables, guesses: list[str]
         else:
             guesses.append(f"{place[0]!r} is {same[0]!r} in another unit, and not used")
     return out
+
+
+def paired(groups: dict[str, dict[str, Place]], tables: Tables, guesses: list[str]) -> dict[str, dict[str, Place]]:
+    """Return two axes that move together, of which nothing but places was recorded, as one axis with two encoders.
+
+    Joints, wheels and sides are parts of their own, however alike they move.
+    """
+    if len(groups) != 2 or any(set(signals) != {"position"} for signals in groups.values()):
+        return groups
+    (axis, first), (_, second) = groups.items()
+    if any(set(words_of(bare(signals["position"][0]))) & MEMBERS for signals in groups.values()):
+        return groups
+    x, y = (values_of(signals["position"], tables) for signals in (first, second))
+    if len(x) != len(y) or abs(np.corrcoef(x, y)[0, 1]) < TOGETHER:
+        return groups
+    names = first["position"][0], second["position"][0]
+    guesses.append(f"{names[0]!r} and {names[1]!r} are two encoders of one axis, because they move together")
+    return {axis: {**first, "load": second["position"]}}
 
 
 def _same(place: Place, other: Place, tables: Tables) -> bool:

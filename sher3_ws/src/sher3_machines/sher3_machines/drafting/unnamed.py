@@ -15,8 +15,10 @@ import numpy as np
 from sher3_diagnosis.channel import Array
 
 from sher3_machines.drafting.guesses import evenly, grows
+from sher3_machines.drafting.names import bare_and_unit
 from sher3_machines.errors import MachineError
 from sher3_machines.intake.mending.motion import AGREES, FOLLOWS, speed_of, speed_ratio
+from sher3_machines.intake.spelling import bare
 from sher3_machines.intake.tables import SAMPLES, Tables
 
 WITHOUT = re.compile(r"c\d+|")
@@ -58,7 +60,13 @@ def given(names: Sequence[str], tables: Tables) -> dict[Place, str]:
             limit=f"{len(places)} different ones: {', '.join(_said(place) for place in places)}",
             remedy="give one name for each column, as in `--names t,q,i`; an empty one leaves its column out",
         )
-    return {place: name for place, name in zip(places, names, strict=True) if name}
+    return {place: _in_unit(name, place[0]) for place, name in zip(places, names, strict=True) if name}
+
+
+def _in_unit(name: str, column: str) -> str:
+    """Return a name with the unit of the column that it is given to, where it states none itself."""
+    unit = bare_and_unit(bare(column))[1]
+    return name if unit is None or bare_and_unit(name)[1] else f"{name} [{unit}]"
 
 
 def told_by_motion(tables: Tables, rate: float | None, guesses: list[str]) -> dict[Place, str]:

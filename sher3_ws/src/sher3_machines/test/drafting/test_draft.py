@@ -266,3 +266,18 @@ def test_pulses_of_a_hobby_servo_are_places(tmp_path, header, sign):
     import_case([tmp_path / "a.csv"], tmp_path / "a.yaml", tmp_path / "case")
     (signals,) = open_case(tmp_path / "case")[1][0].signals.values()
     assert np.abs(signals["reference"] - np.radians(asked)).max() < np.radians(1.0)
+
+
+@pytest.mark.parametrize("header", ["t,enc1,enc2", "t,open_loop [mm],resolver [mm]", "t,phi_in,phi_out"])
+def test_two_places_that_move_together_are_encoders_of_one_axis(tmp_path, header):
+    """Nothing else was recorded; joints, wheels and sides of that name stay parts of their own."""
+    q = np.sin(TIME)
+    read = 1.002 * q + 0.003 * np.sign(np.cos(TIME))
+    signals = [set(axis["signals"]) for axis in parse_yaml(written(tmp_path, header, TIME, q, read).text)["axes"]]
+    assert signals == [{"position", "load"}]
+    assert len(parse_yaml(written(tmp_path, "t,left_enc,right_enc", TIME, q, read).text)["axes"]) == 2
+
+
+def test_a_refusal_lists_columns_in_the_order_in_which_names_are_given(tmp_path):
+    with pytest.raises(MachineError, match=r"no column looks like a position; value t, zeta, beta"):
+        written(tmp_path, "t,zeta,beta", TIME, TIME**2, np.cos(TIME))

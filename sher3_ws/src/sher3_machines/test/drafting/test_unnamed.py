@@ -46,6 +46,16 @@ def test_given_names_are_in_the_words_of_the_file(tmp_path):
     assert {k: v["column"] for k, v in signals.items()} == {"position": "c0", "effort": "c2"}
 
 
+def test_a_given_name_keeps_the_unit_of_its_column(tmp_path):
+    header = {"header": "time [ms],loop [mm],read [mm]", "comments": ""}
+    np.savetxt(tmp_path / "a.csv", swing(2)[:, :3], delimiter=",", **header)
+    described = parse_yaml(draft_of(tmp_path / "a.csv", names=["t", "reference", "position [um]"]).text)
+    signals = described["axes"][0]["signals"]
+    assert described["time"] == {"column": "time [ms]", "unit": "ms"}
+    assert signals["position"] == {"column": "read [mm]", "unit": "um"}
+    assert signals["reference"] == {"column": "loop [mm]", "unit": "mm"}
+
+
 @pytest.mark.parametrize("names", [["t", "q"], ["t", "q", "q", "tau"]])
 def test_names_that_do_not_fit_are_refused_with_the_columns(tmp_path, names):
     np.savetxt(tmp_path / "a.csv", swing(3), delimiter=",")

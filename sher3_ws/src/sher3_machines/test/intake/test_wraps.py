@@ -35,6 +35,13 @@ def test_angles_within_a_turn_are_joined_as_ever():
     assert joined(read, TURN)[0] == pytest.approx(3.0 * T)
 
 
+def test_what_goes_further_than_a_turn_does_not_start_again_within_it():
+    """Steps of a position that is no angle, 0.4 to 9.6, some of them near 2 pi."""
+    levels = np.random.default_rng(0).uniform(0.4, 9.6, 40)
+    assert (np.abs(np.abs(np.diff(levels)) - TURN) < 0.3).any()
+    assert wrapped_over(np.repeat(levels, 50), 1e-3, rotary=True) == 0.0
+
+
 @pytest.mark.parametrize(
     "x",
     [

@@ -82,12 +82,13 @@ def best_sampling(signals: Sequence[AxisSignals], axis: Axis) -> Sampling:
 def _least_of(found: Mapping[Sampling, Excess]) -> Sampling:
     """Return the sampling that leaves least of a law with free gains; of equals, of a late law, then of the stated one.
 
-    The law with free gains is compared first, since nothing but the sampling changes what it leaves.
+    The law with free gains is compared first, since nothing but the sampling changes what it leaves. Below the floor
+    there is nothing to compare: free gains and a late reference make up there for a wrong pace.
     """
     samplings = list(found)
     for left in (lambda x: x.freed, lambda x: x.late):
         least = min(left(found[sampling]) for sampling in samplings)
-        samplings = [sampling for sampling in samplings if left(found[sampling]) <= ALIKE * least]
+        samplings = [sampling for sampling in samplings if left(found[sampling]) <= ALIKE * max(least, 1.0)]
     return min(samplings, key=lambda sampling: found[sampling].stated)
 
 

@@ -18,7 +18,8 @@ class Pace(NamedTuple):
 
     Attributes:
         over: periods of the record between the two readings: 1 of a controller that runs at the rate of the log, 2 of
-            a calmer one, 1/k of one that runs k times as fast, and 0 of one that knows its speed from elsewhere.
+            a calmer one, 1/k and 2/k of those that run k times as fast, and 0 of one that knows its speed from
+            elsewhere.
         lag: periods of the low-pass of first order behind it; 0 for none.
     """
 
@@ -31,14 +32,14 @@ class Pace(NamedTuple):
         if self.lag:
             return f"through a low-pass of {self.lag:.2g} periods"
         if 0.0 < self.over < 1.0:
-            return f"over 1/{1.0 / self.over:.0f} of a period: its controller runs faster than the log"
+            return f"over {self.over:.2g} of a period: its controller runs faster than the log"
         return {0.0: "about the sample", 1.0: "over one period", 2.0: "over two periods"}[self.over]
 
 
 LAST, TWO, CENTRAL = Pace(1.0), Pace(2.0), Pace(0.0)
 """Plain paces: over the last period, over the last two, about the sample."""
-FASTER = tuple(Pace(1.0 / k) for k in (2, 3, 4, 6, 10, 20))
-"""Paces of a controller that runs faster than the log; a wrong one of two neighbours is off by 3 % of a period."""
+FASTER = tuple(Pace(2.0 / k) for k in (3, 4, 5, 6, 8, 12, 20, 40))
+"""Paces of a controller that runs k times, or half as often, per row of the log: over two of its periods, or one."""
 
 
 class Sampling(NamedTuple):

@@ -19,8 +19,7 @@ from sher3_machines.errors import MachineError
 from sher3_machines.thresholds import BLOCKS
 
 from sher3_chain.axes.view import AxisView
-from sher3_chain.chain.view import BUILDS_UP, LEAD_OF_STROKE
-from sher3_chain.thresholds import LEAST_EXCITED, NOISE_SHARE, SLOW
+from sher3_chain.thresholds import LEAST_EXCITED, NOISE_SHARE
 
 LEFT = 1e-3
 """Share of the force's power that must be left without them."""
@@ -42,8 +41,6 @@ COLUMNS = 1 + sum(map(len, RESISTING))
 """Number of columns."""
 OTHERS = 1.0 - np.eye(BLOCKS)
 """Of each block all others."""
-BUILDS_UP_OF_TRAVEL = BUILDS_UP * LEAD_OF_STROKE
-"""Share of the travel over which dry friction builds up, where the lead is not known."""
 
 
 def identify_mass(views: Sequence[AxisView]) -> tuple[float, tuple[float, float]]:
@@ -152,11 +149,7 @@ def _best(blocks: Array) -> tuple[float, list[int]]:
 
 def mass_of(views: Sequence[AxisView]) -> float:
     """Return the mass that the records tell, whatever its error, kg or kg m^2; 0 without samples in motion."""
-    x, y = _rows(views)
-    if len(y) < BLOCKS:
-        return 0.0
-    used = x[:, _best(_blocks(x, y))[1]]
-    return float(solve(used.T @ used, used.T @ y)[0])
+    return _told(views).get(0, 0.0)
 
 
 def braking_time(views: Sequence[AxisView]) -> float:
@@ -164,28 +157,23 @@ def braking_time(views: Sequence[AxisView]) -> float:
 
     A weight or a spring tells the mass from a lag.
     """
-    x, y = _rows(views)
-    if len(y) < BLOCKS:
-        return np.inf
-    columns = _best(_blocks(x, y))[1]
-    if BY_PLACE[0] in columns:
-        return np.inf
-    used = x[:, columns]
-    found = dict(zip(columns, map(float, solve(used.T @ used, used.T @ y)), strict=True))
-    return max(found[0], 0.0) / found[1] if found.get(1, 0.0) > 0.0 else np.inf
+    found = _told(views)
+    return np.inf if BY_PLACE[0] in found or not found.get(1, 0.0) > 0.0 else max(found[0], 0.0) / found[1]
 
 
 def load_mass_of(views: Sequence[AxisView]) -> float:
     """Return the mass that moves with the second encoder, kg or kg m^2; 0 where the records do not tell it."""
-    if any(view.run.load is None for view in views):
-        return 0.0
+    return 0.0 if any(view.run.load is None for view in views) else max(_told(views).get(BEHIND, 0.0), 0.0)
+
+
+def _told(views: Sequence[AxisView]) -> dict[int, float]:
+    """Return column -> its coefficient, of the columns that are worth it; none without samples in motion."""
     x, y = _rows(views)
-    columns = _best(_blocks(x, y))[1] if len(y) >= BLOCKS else []
-    if BEHIND not in columns:
-        return 0.0
+    if len(y) < BLOCKS:
+        return {}
+    columns = _best(_blocks(x, y))[1]
     used = x[:, columns]
-    found = float(solve(used.T @ used, used.T @ y)[columns.index(BEHIND)])
-    return max(found, 0.0)
+    return dict(zip(columns, map(float, solve(used.T @ used, used.T @ y)), strict=True))
 
 
 def _rows(views: Sequence[AxisView]) -> tuple[Array, Array]:
@@ -223,24 +211,18 @@ def _left(view: AxisView, effort: Array) -> Array:
 def _columns(view: AxisView) -> tuple[Array, Mask]:
     """Columns (g, 7) acceleration, velocity, direction, one, two of the position, and the load; where the axis moves.
 
-    Those of the position are a weight at an arm on an axis that turns and a spring on one that slides.
+    Those of the position are a weight at an arm on an axis that turns and a spring on one that slides; none where the
+    effort is fed back from the place.
     """
-    run, site = view.run, view.described.name
-    speed = np.abs(view.velocity[:, 0])
-    ok = view.in_motion
-    if ok.any():
-        ok = ok & (speed > SLOW * np.sqrt(np.mean(speed[ok] ** 2)))
-    nominal = view.axis(site)
-    reach = BUILDS_UP * nominal.lead if nominal.lead_known else BUILDS_UP_OF_TRAVEL * nominal.travel
-    direction = run.to_grid(view.sliding(0, max(reach, view.described.encoder_resolution))[:, None])[:, 0]
+    run = view.run
     q = view.position[:, 0]
-    spring = q - q.mean() if view.described.motion == "linear" else np.zeros_like(q)
+    spring = q - q.mean() if view.described.motion == "linear" and not view.fed_back else np.zeros_like(q)
     arm = run.to_grid(np.column_stack([np.sin(run.motor[:, 0]), np.cos(run.motor[:, 0])]))
     by_place = arm.T if view.hangs else (spring, np.zeros_like(q))
     one = np.ones(len(q))
     behind = np.zeros_like(one) if view.load_mass else view.behind[:, 0]
-    columns = [view.acceleration[:, 0], view.velocity[:, 0], direction, one, *by_place, behind]
-    return np.column_stack(columns), ok
+    columns = [view.acceleration[:, 0], view.velocity[:, 0], view.direction, one, *by_place, behind]
+    return np.column_stack(columns), view.in_fast_motion
 
 
 def _chosen(choices: Sequence[Sequence[int]]) -> Mask:

@@ -13,6 +13,8 @@ TURN = 2.0 * np.pi
 """A turn, rad."""
 WRAP = 0.1
 """Share of a range by which a jump between two samples may differ from it: what an axis moves by in a sample."""
+FEW = 0.01
+"""Share of readings at either end that may be wrong ones: they do not tell how far an angle goes."""
 ALIKE = 0.02
 """Share of a range by which jumps over it may differ."""
 ROUND = 0.005
@@ -25,10 +27,12 @@ def wrapped_over(x: Array, step: float, rotary: bool) -> float:
     Args:
         x: as recorded.
         step: one count of its encoder: fields of a protocol hold a power of two of counts.
-        rotary: whether it is an angle, of which jumps by a turn are wraps whatever it does before and after.
+        rotary: whether it is an angle, of which jumps by a turn are wraps whatever it does before and after; what goes
+            further than a turn does not start again there.
     """
     steps = np.diff(x)
-    if rotary and (np.abs(np.abs(steps) - TURN) < WRAP * TURN).any():
+    most = np.ptp(np.quantile(x, (FEW, 1.0 - FEW)))
+    if rotary and most < (1.0 + WRAP) * TURN and (np.abs(np.abs(steps) - TURN) < WRAP * TURN).any():
         return TURN
     at = np.flatnonzero(np.abs(steps) > (1.0 - WRAP) * np.ptp(x))
     at = at[(at > 0) & (at < len(steps) - 1)]
