@@ -60,7 +60,7 @@ def experiment(
 
 def motion_command(verdict: Path, case: Path, output: Path, as_json: bool, bet: bool) -> str:
     """Design what to record of another machine, write the file of its motion, if it moves, and return what to print."""
-    from sher3_chain.manipulator.causes.confounding import beyond_motion
+    from sher3_chain.manipulator.causes.confounding import alike_in_motion, beyond_motion
     from sher3_export.excitation.design import TRIED, designed, is_driven
     from sher3_export.excitation.forms import save
     from sher3_export.verdicts import read_verdict
@@ -69,7 +69,9 @@ def motion_command(verdict: Path, case: Path, output: Path, as_json: bool, bet: 
     (machine, runs), causes = open_case(case), read_verdict(verdict, bet).causes
     open_ones = [c for c in causes if c.rivals]
     shown = {e.id: e.best.why for e in machine.library()}
-    besides = [*beyond_motion(causes), *dict.fromkeys(shown[e] for c in open_ones for e in c.rivals if e in shown)]
+    unmoved = [{e for alike, _ in alike_in_motion(c) for e in alike} for c in open_ones]
+    told = [shown[e] for c, x in zip(open_ones, unmoved, strict=True) for e in c.rivals if e in shown and e not in x]
+    besides = [*beyond_motion(causes), *dict.fromkeys(told)]
     rivals = [f"{' / '.join([c.effect, *c.rivals])} on {c.actuator}" for c in open_ones]
     made = designed(machine, runs) if is_driven(machine) else None
     data: dict[str, Any] = {"file": None, "rivals": rivals, "besides": besides}

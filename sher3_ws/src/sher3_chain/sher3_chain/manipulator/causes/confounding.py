@@ -99,20 +99,27 @@ def confounding_notes(evidence: ArmMotionEvidence) -> list[str]:
     ]
 
 
-def beyond_motion(causes: Iterable[Cause]) -> list[str]:
-    """Return what would tell causes apart that no motion tells apart: a known weight, or a force that is recorded.
+def alike_in_motion(cause: Cause) -> list[tuple[list[str], str]]:
+    """Return the effects, of a cause and its rivals, that no motion tells apart, and what does; [] of none.
 
     The drive's gain, weight and payload multiply one force; a weight that somebody put on a scale adds another one.
     """
-    same, alike = set(same_force()), {e.id: e.indistinct for kind in ("servo", "joint") for e in pages(kind)}
-    out = []
-    for c in causes:
-        heavy = [e for e in (c.effect, *c.rivals) if e in same]
-        unfelt = [c.effect, *(e for e in c.rivals if e in alike.get(c.effect, ()))]
-        for found, told in ((heavy, WEIGH), (unfelt, FEEL)):
-            names = _listed([e.replace("_", " ") for e in found]) if len(found) > 1 else ""
-            out += [f"no motion tells {names} on {c.actuator} apart, {told}"] if names else []
-    return out
+    same, rivals = set(same_force()), cause.rivals
+    unfelt = {x for kind in ("servo", "joint") for e in pages(kind) if e.id == cause.effect for x in e.indistinct}
+    heavy = [e for e in (cause.effect, *rivals) if e in same]
+    return [x for x in ((heavy, WEIGH), ([cause.effect, *(e for e in rivals if e in unfelt)], FEEL)) if len(x[0]) > 1]
+
+
+def beyond_motion(causes: Iterable[Cause]) -> list[str]:
+    """Return in words what would tell causes apart that no motion tells apart, once for all places."""
+    found: dict[tuple[str, str], list[str]] = {}
+    for cause in causes:
+        for effects, told in alike_in_motion(cause):
+            found.setdefault((_listed([e.replace("_", " ") for e in effects]), told), []).append(cause.actuator)
+    return [
+        f"no motion tells {names} on {', '.join(dict.fromkeys(sites))} apart, {told}"
+        for (names, told), sites in found.items()
+    ]
 
 
 def _listed(words: Sequence[str]) -> str:
