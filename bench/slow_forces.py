@@ -57,7 +57,10 @@ CASES = (
         for hand, told, seconds in (AT_ONCE, SLOWLY)
         for degrees in (10, 20)
     ),
-    Case("gain grows by 10 % a second, 0.6 N", "ramp", {"rate": 0.1}, constant(0.6), 12.0, "free"),
+    *(
+        Case(f"gain grows by {100 * rate:g} % a second, 0.6 N", "ramp", {"rate": rate}, constant(0.6), 12.0, "free")
+        for rate in (0.1, 0.05)
+    ),
     Case("sensor stays at 1 N, the hand fades at 0.09 N/s", "held", {}, fades(1.0, 0.09), 12.0),
 )  # fmt: skip
 

@@ -72,9 +72,10 @@ HAZARDS = (
         "beside a true hand a false force of 0.2 N and less, or below 12 % of the hand, that was there when the axes "
         "last turned round: 0.2 mm/s more, since the drives know a level no better: 20 g on the tool, and what "
         "friction in the screws holds, look the same; a gain that grows by 10 % a second under 0.6 N: 0.22 mm further "
-        "along the hand; a sensor turned by 10 degrees as a hand comes at once: 67 um sideways on 1.5 mm (`python "
-        "bench/slow_forces.py`); without a hand 0.2 to 0.9 N are noticed so late that the travel near tissue is "
-        "beyond the budget of 25 um, since a leg's force has a noise of 0.17 N and a light hand takes time",
+        "along the hand, by 5 % 0.26 mm, told by its size; a sensor turned by 10 degrees as a hand comes "
+        "at once: 67 um sideways on 1.5 mm (`python bench/slow_forces.py`); without a hand "
+        "0.2 to 0.9 N are noticed so late that the travel near tissue is beyond the budget of 25 um, since a leg's "
+        "force has a noise of 0.17 N and a light hand takes time",
     ),
     Hazard(
         "an axis moves by itself",
