@@ -22,7 +22,7 @@ from sher3_diagnosis.verdict import Verdict
 sys.path.append(str(Path(__file__).parents[1] / "sher3_ws/src/sher3_chain/test"))
 
 from drawn_arms import NAMES, drawn_xml, log_of_servos
-from drawn_axes import DRIVE, FINE, STICKS, AxesRun, _axis, _machine, played, reference_of
+from drawn_axes import DRIVE, FINE, STICKS, AxesRun, axis_with, machine_of, played, reference_of
 
 PREFIX = {"G": 1e9, "M": 1e6, "k": 1e3, "m": 1e-3, "µ": 1e-6, "n": 1e-9, "p": 1e-12}
 SAID = re.compile(r"([A-Za-z][\w ]*?) from ([\d.e+-]+) ([^ ,]+)")
@@ -68,9 +68,13 @@ def axis(seed: int) -> Machine:
         gains = (pace**2 * mass, 1.4 * pace * mass)
         top = STICKS * float(np.abs(speed).max())
         rows = played(reference, DRIVE, FINE, law, gains, top, count, 1.0 + laws.get("torque_constant", 0.0))
-        fields = {**_axis(rotary, count, ("position", "effort")), "command_law": {"kind": "force"}, "mass": mass}
+        fields = {
+            **axis_with(rotary, count, ("position", "effort")),
+            "command_law": {"kind": "force"},
+            "mass": mass,
+        }
         signals = {"position": rows[::every, 0], "effort": (rows[:, 1] + errors)[::every]}
-        return diagnose(_machine(fields), [AxesRun("run", DRIVE * every, {"axis": signals})]).verdict
+        return diagnose(machine_of(fields), [AxesRun("run", DRIVE * every, {"axis": signals})]).verdict
 
     return answered
 
@@ -91,9 +95,9 @@ def servo(seed: int) -> Machine:
         for k in range(1, len(q)) if dry else ():
             q[k] = min(max(q[k - 1], asked[k] - dry), asked[k] + dry)
         read = count * np.round((q - laws.get("gravity_load", 0.0) + noise) / count)
-        fields = {**_axis(rotary, count, ("position", "reference")), "command_law": {"kind": "position"}}
+        fields = {**axis_with(rotary, count, ("position", "reference")), "command_law": {"kind": "position"}}
         run = AxesRun("run", period, {"axis": {"position": read, "reference": asked}})
-        return diagnose(_machine(fields), [run]).verdict
+        return diagnose(machine_of(fields), [run]).verdict
 
     return answered
 

@@ -149,7 +149,7 @@ def drawn_axis(seed: int, motion: int = 0, faster: float = 1.0, carried: float =
     }
     truth = {name: values[name] for name in sorted(truth)}
     axis = {
-        **_axis(rotary, count, ("position", "effort")),
+        **axis_with(rotary, count, ("position", "effort")),
         "command_law": {"kind": "force"},
         "mass": (1.0 + carried) * mass,
         "gravity": {"arm": weight if known else 0.0},
@@ -157,7 +157,7 @@ def drawn_axis(seed: int, motion: int = 0, faster: float = 1.0, carried: float =
     signals = {"position": rows[::every, 0], "effort": effort[::every]}
     lag = truth.get("sensor_delay", {}).get("delay", 0.0)
     falls = slow if "stribeck_friction" in truth else 0.0
-    return Drawn(_machine(axis), AxesRun("run", DRIVE * every, {"axis": signals}), truth, "axis", lag, falls)
+    return Drawn(machine_of(axis), AxesRun("run", DRIVE * every, {"axis": signals}), truth, "axis", lag, falls)
 
 
 def drawn_servo(seed: int) -> Drawn:
@@ -188,13 +188,13 @@ def drawn_servo(seed: int) -> Drawn:
     truth |= {"coulomb_friction": {"force": dry}} if dry else {}
     truth |= {"gravity_load": {"arm": weight} if arm else {"force": weight}} if weight else {}
     truth |= {"delay": {}} if late else {}
-    axis = {**_axis(rotary, count, ("position", "reference")), "command_law": {"kind": "position"}}
+    axis = {**axis_with(rotary, count, ("position", "reference")), "command_law": {"kind": "position"}}
     signals = {"position": rows[::every, 0], "reference": reference[::every]}
     run = AxesRun("run", period, {"axis": signals})
-    return Drawn(_machine(axis), run, truth, "servo", late * DRIVE)
+    return Drawn(machine_of(axis), run, truth, "servo", late * DRIVE)
 
 
-def _axis(rotary: bool, count: float, names: tuple[str, ...]) -> dict:
+def axis_with(rotary: bool, count: float, names: tuple[str, ...]) -> dict:
     place = "rad" if rotary else "m"
     units = {"position": place, "reference": place, "effort": "N*m" if rotary else "N"}
     return {
@@ -205,6 +205,6 @@ def _axis(rotary: bool, count: float, names: tuple[str, ...]) -> dict:
     }
 
 
-def _machine(axis: dict) -> Axes:
+def machine_of(axis: dict) -> Axes:
     fields = {"kind": "axes", "name": "drawn", "time": {"column": "t", "unit": "s"}, "axes": [axis]}
     return Axes(AxesDescription.model_validate(fields))

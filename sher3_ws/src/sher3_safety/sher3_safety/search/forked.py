@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import os
-import pickle
 import signal
 from collections.abc import Callable
+from multiprocessing import Pipe
 from typing import Any
 
 from sher3_common import Sher3Error
@@ -24,19 +24,19 @@ def forked(call: Callable[[], Any]) -> Any:
     Raises:
         ForkEnded: it raised an exception, or its process was ended.
     """
-    reads, writes = os.pipe()
+    reads, writes = Pipe(duplex=False)
     child = os.fork()
     if not child:
         signal.alarm(LONGEST)
         try:
-            with os.fdopen(writes, "wb") as pipe:
-                pickle.dump(call(), pipe)
+            writes.send(call())
         finally:
             os._exit(0)
-    os.close(writes)
-    with os.fdopen(reads, "rb") as pipe:
-        answer = pipe.read()
-    os.waitpid(child, 0)
-    if not answer:
-        raise ForkEnded("a fork ended without an answer", value=child, remedy="see what it printed")
-    return pickle.loads(answer)
+    writes.close()
+    try:
+        return reads.recv()
+    except EOFError:
+        raise ForkEnded("a fork ended without an answer", value=child, remedy="see what it printed") from None
+    finally:
+        reads.close()
+        os.waitpid(child, 0)
