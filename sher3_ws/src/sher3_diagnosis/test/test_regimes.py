@@ -39,7 +39,7 @@ def test_members_of_a_family_do_not_overlap_and_are_all_samples():
 
 def test_a_place_that_is_no_axis_has_the_speed_of_the_whole_machine():
     found = masks(evidence_of([run(np.ones(3 * N))]), "tip")
-    assert set(found) == {"speed", "load"}  # one excitation alone tells nothing
+    assert set(found) == {"speed", "load", "excitation"}
     assert int(found["speed"]["fast"].sum()) == N
 
 

@@ -32,6 +32,7 @@ def regime(evidence: Evidence, channel: Channel) -> str:
 def regime_powers(evidence: Evidence, channel: Channel) -> dict[str, float]:
     """Return the mean power over floor of a channel per regime: motion, direction, reversal, load, excitation, ..."""
     total: dict[str, list[float]] = {}
+    unsaid = {*UNSAID, *(f"in {x}" for x in evidence.excitations if len(set(evidence.excitations)) == 1)}
     for r in range(len(evidence.views)):
         found = evidence.data.residuals[r].get(channel)
         if found is None or not found.ok.any():
@@ -40,7 +41,7 @@ def regime_powers(evidence: Evidence, channel: Channel) -> dict[str, float]:
         families = regime_masks(evidence, r, channel.actuator)
         for name, mask in {n: m for family in families.values() for n, m in family.items()}.items():
             chosen = mask & found.ok
-            if name not in UNSAID and chosen.sum() >= REGIME_SAMPLES:
+            if name not in unsaid and chosen.sum() >= REGIME_SAMPLES:
                 total.setdefault(name, []).append(float(power[chosen].mean()))
     return {name: float(np.mean(x)) for name, x in total.items()}
 
@@ -54,9 +55,8 @@ def regime_masks(evidence: Evidence, run: int, actuator: str) -> Families:
     families: Families = {
         "speed": {"at rest": rest, "slow": ~rest & ~fast, "fast": fast},
         "load": {"under load": view.loaded, "without load": ~view.loaded},
+        "excitation": {f"in {view.excitation}": np.ones(len(speed), dtype=bool)},
     }
-    if len(set(evidence.excitations)) > 1:
-        families["excitation"] = {f"in {view.excitation}": np.ones(len(speed), dtype=bool)}
     middle, span = _warmth(evidence)
     if view.temperature_known and span > WARM:
         families["temperature"] = {"warm": view.warmth > middle, "cool": view.warmth <= middle}

@@ -62,7 +62,7 @@ def clock_of(tables: Tables, guesses: list[str]) -> str:
     if even:
         guesses.append(f"time is the column {even[0]!r}, because it grows evenly")
         return even[0]
-    stamps = next((n for n, x in tables.items() if x.ndim == 1 and tells_time(n)), None)
+    stamps = next((n for n, x in tables.items() if x.ndim == 1 and len(x) and tells_time(n)), None)
     if stamps is not None:
         ends = f"{tables[stamps][0]:.6g} to {tables[stamps][-1]:.6g}"
         remedy = "sort the rows by it, or leave it out and state the rate of the samples, Hz: --rate 500"
