@@ -44,7 +44,7 @@ def causes_of_arm(evidence: ArmMotionEvidence, candidates: Candidates, say: Say)
     """Choose the causes of an arm in motion, with their rivals; none where no joint has a gap.
 
     A load that one joint alone feels is taken where that joint's own laws leave clearly more. None is looked for where
-    links with other bodies leave far less beside plain laws, and whatever single joints may do costs more.
+    links with other bodies leave far less beside plain laws, but for what single joints may do that costs clearly less.
     """
     if not down_to_floor(evidence.channels, evidence, evidence.null()):
         return Attribution(evidence.null(), (), (), nuisance=len(evidence.nuisance))
@@ -52,7 +52,7 @@ def causes_of_arm(evidence: ArmMotionEvidence, candidates: Candidates, say: Say)
     plain = beside(evidence, candidates)
     loads = payloads(evidence, candidates, plain)
     linked = _linked(evidence, candidates, [fit(evidence.data, plain), *(load.fit for load in loads)], say)
-    if linked is not None and linked.cost < best.cost:
+    if linked is not None and CLEARLY * linked.cost < best.cost:
         return with_rivals(evidence, candidates, linked, ())
     for load in loads:
         other = _explained(evidence, candidates, load.fit.terms[-1:], load.fit, say)
