@@ -80,15 +80,18 @@ def best_sampling(signals: Sequence[AxisSignals], axis: Axis) -> Sampling:
 
 
 def _least_of(found: Mapping[Sampling, Excess]) -> Sampling:
-    """Return the sampling that leaves least of a law with free gains; of equals, of a late law, then of the stated one.
+    """Return the sampling under which the stated law reaches its floor best, where it does under any.
 
-    The law with free gains is compared first, since nothing but the sampling changes what it leaves. Below the floor
-    there is nothing to compare: free gains and a late reference make up there for a wrong pace.
+    Otherwise the law with free gains is compared first, since nothing but the sampling changes what it leaves; of
+    equals a late law, then the stated one.
     """
     samplings = list(found)
+    plain = min(samplings, key=lambda sampling: found[sampling].stated)
+    if found[plain].stated <= 1.0:
+        return plain
     for left in (lambda x: x.freed, lambda x: x.late):
         least = min(left(found[sampling]) for sampling in samplings)
-        samplings = [sampling for sampling in samplings if left(found[sampling]) <= ALIKE * max(least, 1.0)]
+        samplings = [sampling for sampling in samplings if left(found[sampling]) <= ALIKE * least]
     return min(samplings, key=lambda sampling: found[sampling].stated)
 
 

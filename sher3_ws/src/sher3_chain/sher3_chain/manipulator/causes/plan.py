@@ -89,14 +89,16 @@ def laws_beside_links(effects: Iterable[Effect]) -> list[Effect]:
 JOINT = SearchPlan(
     causes=CAUSES_OF_JOINT,
     down_to_floor=True,
-    together=True,
     possible=of_joint,
     order=plain_before_richer,
     reviews=(borne_out,),
 )
-"""How the causes of one force balance, or of one pair of encoders, are looked for: plain laws at once and by what they
-are worth. One after the other, a late command takes up the friction beside it; and what a joint leaves below its own
-floor a payload would take up, and the other joints with it."""
+"""How the causes of one force balance, or of one pair of encoders, are looked for."""
+
+TOGETHER = replace(JOINT, together=True)
+"""The same with plain laws at once and by what they are worth: beside a payload or a wrong mass, which would take up
+what a joint leaves below its own floor, and the other joints with it; and where the law of a servo stands for the
+effort, of which a late command, taken first, would take up the friction."""
 
 BESIDE_LINKS = replace(JOINT, possible=beside_links)
 """The same beside links found from the data."""

@@ -30,7 +30,7 @@ from sher3_chain.manipulator.causes.explained import Explained, with_rivals
 from sher3_chain.manipulator.causes.lateness import LATE, OF_LAW, Late, lateness
 from sher3_chain.manipulator.causes.links import CLEARLY, wrong_links
 from sher3_chain.manipulator.causes.payload import beside, centred, closes, middle, payloads
-from sher3_chain.manipulator.causes.plan import BESIDE_LINKS, JOINT, bought, laws_beside_links
+from sher3_chain.manipulator.causes.plan import BESIDE_LINKS, JOINT, TOGETHER, bought, laws_beside_links
 from sher3_chain.manipulator.evidence import ArmMotionEvidence, channel_of, channels_of, of_channel
 from sher3_chain.search.friction_in_motion import without_slow
 
@@ -94,13 +94,15 @@ def _explained(
     effects = [e for e in candidates.effects if e.places == ("axis",)]
     beside = _added(evidence, loaded, loads) if loaded is not None else ()
     linked = any(t.effect.free() is not None for t in loads)
-    effects, plan = (laws_beside_links(effects), BESIDE_LINKS) if linked else (effects, JOINT)
+    effects = laws_beside_links(effects) if linked else effects
     alone: list[Attribution] = []
     for channel in (c for joint in evidence.judged for c in channels_of(joint)):
         own = of_channel(evidence, channel, beside)
         say(f"{channel}{' beside ' + ' and '.join(t.site for t in loads) if loads else ''}")
         balance = channel == channel_of(channel.actuator)
         late = lateness(evidence, channel.actuator, beside) if balance else None
+        by_law = evidence.records[0].axis(channel.actuator).follows
+        plan = BESIDE_LINKS if linked else TOGETHER if loads or by_law else JOINT
         alone.append(_beside_delay(own, late, effects, say, plan) if balance else _searched(own, effects, say))
     terms = [*evidence.nuisance, *loads]
     for found in alone:
