@@ -29,7 +29,7 @@ def over_rivals(found: Attribution, index: int, told: Mapping[str, Parameter]) -
         at = next((k for k, t in enumerate(other.terms) if t.key == term.key), None)
         if at is not None:
             values = term.effect.parameters(other.terms[at].shape, other.of(at))
-            out = {name: _holding(p, told[name], values[name]) for name, p in out.items()}
+            out |= {name: _holding(out[name], told[name], x) for name, x in values.items() if name in told}
     return out
 
 

@@ -80,19 +80,18 @@ def best_sampling(signals: Sequence[AxisSignals], axis: Axis) -> Sampling:
 
 
 def _least_of(found: Mapping[Sampling, Excess]) -> Sampling:
-    """Return the sampling under which the stated law reaches its floor best, where it does under any.
+    """Return the sampling that leaves least of a law with free gains, since nothing else changes what that leaves.
 
-    Otherwise the law with free gains is compared first, since nothing but the sampling changes what it leaves; of
-    equals a late law, then the stated one.
+    Of equals the one under which the stated law reaches its floor best, or else a late law. Above the floor these say
+    how far the law is off, and nothing of the sampling.
     """
-    samplings = list(found)
-    plain = min(samplings, key=lambda sampling: found[sampling].stated)
-    if found[plain].stated <= 1.0:
-        return plain
-    for left in (lambda x: x.freed, lambda x: x.late):
-        least = min(left(found[sampling]) for sampling in samplings)
-        samplings = [sampling for sampling in samplings if left(found[sampling]) <= ALIKE * least]
-    return min(samplings, key=lambda sampling: found[sampling].stated)
+    least = min(x.freed for x in found.values())
+    equal = [sampling for sampling, x in found.items() if x.freed <= ALIKE * least]
+    for law in (lambda x: x.stated, lambda x: x.late):
+        best = min(equal, key=lambda sampling: law(found[sampling]))
+        if law(found[best]) <= 1.0:
+            return best
+    return min(equal, key=lambda sampling: found[sampling].freed)
 
 
 def _within(sampling: Sampling) -> Sampling:

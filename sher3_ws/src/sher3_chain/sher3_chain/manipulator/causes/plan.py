@@ -97,8 +97,8 @@ JOINT = SearchPlan(
 
 TOGETHER = replace(JOINT, together=True)
 """The same with plain laws at once and by what they are worth: beside a payload or a wrong mass, which would take up
-what a joint leaves below its own floor, and the other joints with it; and where the law of a servo stands for the
-effort, of which a late command, taken first, would take up the friction."""
+what a joint leaves below its own floor, and the other joints with it; and as a second try where the law of a servo
+stands for the effort, of which a late command, taken first, takes up the friction."""
 
 BESIDE_LINKS = replace(JOINT, possible=beside_links)
 """The same beside links found from the data."""

@@ -22,6 +22,7 @@ from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.fit.fitting import Fit, Term, fit, make_term
 from sher3_diagnosis.fit.tolerance import NUISANCE
 from sher3_diagnosis.judge.left_over import down_to_floor
+from sher3_diagnosis.quantify.polish import polished
 from sher3_diagnosis.thresholds import NEEDED
 from sher3_effects import computed
 
@@ -30,7 +31,7 @@ from sher3_chain.manipulator.causes.explained import Explained, with_rivals
 from sher3_chain.manipulator.causes.lateness import LATE, OF_LAW, Late, lateness
 from sher3_chain.manipulator.causes.links import CLEARLY, wrong_links
 from sher3_chain.manipulator.causes.payload import beside, centred, closes, middle, payloads
-from sher3_chain.manipulator.causes.plan import BESIDE_LINKS, JOINT, TOGETHER, bought, laws_beside_links
+from sher3_chain.manipulator.causes.plan import BESIDE_LINKS, JOINT, TOGETHER, bought, laws_beside_links, spent
 from sher3_chain.manipulator.evidence import ArmMotionEvidence, channel_of, channels_of, of_channel
 from sher3_chain.search.friction_in_motion import without_slow
 
@@ -102,8 +103,8 @@ def _explained(
         balance = channel == channel_of(channel.actuator)
         late = lateness(evidence, channel.actuator, beside) if balance else None
         by_law = evidence.records[0].axis(channel.actuator).follows
-        plan = BESIDE_LINKS if linked else TOGETHER if loads or by_law else JOINT
-        alone.append(_beside_delay(own, late, effects, say, plan) if balance else _searched(own, effects, say))
+        plans = (BESIDE_LINKS,) if linked else (TOGETHER,) if loads else (JOINT, TOGETHER) if by_law else (JOINT,)
+        alone.append(_beside_delay(own, late, effects, say, plans) if balance else _searched(own, effects, say))
     terms = [*evidence.nuisance, *loads]
     for found in alone:
         terms += [candidates.term(t.effect, t.site, t.shape) for t in _causes(found)]
@@ -117,13 +118,17 @@ def _causes(found: Attribution) -> list[Term]:
     return [t for t in found.fit.terms if t.effect.family != NUISANCE]
 
 
-def _searched(own: Evidence, effects: Sequence[Effect], say: Say, plan: SearchPlan = JOINT) -> Attribution:
-    """Search one channel for causes."""
-    return planned(Candidates(own, effects), plan, partial(down_to_floor, own.channels, own), say)
+def _searched(
+    own: Evidence, effects: Sequence[Effect], say: Say, plans: Sequence[SearchPlan] = (JOINT,)
+) -> Attribution:
+    """Search one channel for causes by each plan; return the cheapest."""
+    left = partial(down_to_floor, own.channels, own)
+    found = [polished(own, planned(Candidates(own, effects), plan, left, say)) for plan in plans]
+    return min(found, key=lambda attribution: spent(attribution.fit))
 
 
 def _beside_delay(
-    own: Evidence, late: Late | None, effects: Sequence[Effect], say: Say, plan: SearchPlan
+    own: Evidence, late: Late | None, effects: Sequence[Effect], say: Say, plans: Sequence[SearchPlan]
 ) -> Attribution:
     """Search the force balance of a joint without and beside a late effort; return what is cheaper.
 
@@ -134,15 +139,15 @@ def _beside_delay(
     """
     others = [e for e in effects if e.family != TIMING or e.id == computed(OF_LAW).id]
     if late is not None and late.told and not late.sure:
-        return _searched(own, effects, say, replace(plan, together=False))
-    found = _searched(own, others, say, plan)
+        return _searched(own, effects, say, [replace(plan, together=False) for plan in plans])
+    found = _searched(own, others, say, plans)
     if late is None or not late.sure:
         return found
     site = own.places["axis"][0]
     page = computed(LATE).told()
     trials = [make_term(own.data, page, site, shape) for shape in late.shapes]
     best = min(trials, key=lambda term: fit(own.data, [*found.fit.terms, term]).total)
-    beside = _searched(replace(own, nuisance=(best,)), others, say, plan)
+    beside = _searched(replace(own, nuisance=(best,)), others, say, plans)
     return beside if beside.fit.admissible and _worth(own, site, found.fit, beside.fit) > NEEDED else found
 
 
