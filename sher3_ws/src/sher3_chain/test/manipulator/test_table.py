@@ -6,6 +6,7 @@ from sher3_chain.manipulator.library import of_joints
 from sher3_chain.manipulator.report.table import HEADS, table_of
 from sher3_diagnosis import diagnose
 from sher3_diagnosis.report.page import render
+from sher3_effects import pages
 
 
 def test_each_constant_stands_in_its_column_with_interval_and_rivals():
@@ -23,6 +24,14 @@ def test_each_constant_stands_in_its_column_with_interval_and_rivals():
     assert rows["A2"]["spring"].startswith("Transmission compliance") and rows["A2"]["play"].startswith("Backlash 2 m")
     assert rows["A2"]["Coulomb"] == "–" and set(rows["A3"].values()) == {"not judged"}
     assert [x.split(":")[0] for x in table.lines()] == ["A1", "A2"] and len(table.heads) == len(HEADS) + 1
+
+
+def test_a_servo_that_acts_late_or_weakly_stands_under_delay_and_gain():
+    late = caused("command_delay", "timing", "A1", "reference_delay", 0.008, "s")
+    weak = caused("controller_gain", "scale", "A1", "position_relative", -0.2, "1")
+    table = table_of([late, weak], [*of_joints(), *pages("law")], ["A1"], ["A1"])
+    (row,) = (dict(zip(table.heads[1:], x[1:], strict=True)) for x in table.rows)
+    assert row["delay"].startswith("Command delay 8 ms") and row["gain"].startswith("Controller gain")
 
 
 def test_a_link_with_a_payload_has_a_row_of_its_own():
