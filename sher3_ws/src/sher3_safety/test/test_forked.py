@@ -22,6 +22,7 @@ def test_a_long_answer_comes_whole():
     assert forked(lambda: b"x" * 1_000_000) == b"x" * 1_000_000
 
 
-def test_a_fork_that_fails_is_an_error():
+def test_a_fork_that_fails_is_an_error_and_prints_what_it_raised(capfd):
     with pytest.raises(ForkEnded, match="without an answer"):
         forked(lambda: 1 // 0)
+    assert "ZeroDivisionError" in capfd.readouterr().err

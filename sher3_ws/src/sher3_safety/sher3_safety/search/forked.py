@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
+import traceback
 from collections.abc import Callable
 from multiprocessing import Pipe
 from typing import Any
@@ -30,6 +31,8 @@ def forked(call: Callable[[], Any]) -> Any:
         signal.alarm(LONGEST)
         try:
             writes.send(call())
+        except Exception:
+            traceback.print_exc()
         finally:
             os._exit(0)
     writes.close()
