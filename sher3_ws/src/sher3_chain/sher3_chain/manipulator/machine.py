@@ -143,10 +143,7 @@ class Manipulator(Chain[ArmMotionEvidence]):
         weak = {j.name for j in self.described.joints if j.by_its_law}
         alike = {e.id: (e.id, *e.indistinct) for e in self.effects(evidence)}
         causes = [with_hidden(c, alike[c.effect]) if c.actuator in weak and c.effect in alike else c for c in causes]
-        commanded = {
-            j.name for j in self.described.joints if j.signals.effort is None and j.signals.command is not None
-        }
-        causes = [acting_late(cause, commanded) for cause in in_true_force(causes)]
+        causes = [acting_late(cause, self.described.told) for cause in in_true_force(causes)]
         own, same = evidence.shares, same_force()
         return evidence, [with_hidden(in_own_unit(c, RECORDED), same) if c.actuator in own else c for c in causes]
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -83,6 +83,17 @@ def written(data: Mapping[str, Any], guesses: list[str]) -> Draft:
     return Draft(head + dump_yaml(data), guesses)
 
 
+def name_of(path: Path) -> str:
+    """Return the name of a machine after the file of its record."""
+    return re.sub(r"\W+", "_", path.stem)
+
+
+def unused(tables: Tables, used: Collection[str]) -> list[str]:
+    """Return the guess that says which columns are not used; [] where all are."""
+    left = [n for n in tables if n not in used]
+    return [f"not used: {', '.join(left)}"] if left else []
+
+
 def drafted(path: Path, tables: Tables, rate: float | None, guesses: list[str], held: bool = False) -> dict[str, Any]:
     """Return a description of a chain of axes as plain data, with `held` ones where asked; raises MachineError."""
     clock = None if rate else clock_of(tables, guesses)
@@ -116,7 +127,7 @@ def drafted(path: Path, tables: Tables, rate: float | None, guesses: list[str], 
     if left:
         more = f" and {len(left) - LISTED} more" if len(left) > LISTED else ""
         guesses.append(f"not used: {', '.join(left[:LISTED])}{more}")
-    return {"kind": "axes", "name": re.sub(r"\W+", "_", path.resolve().stem), "time": time, "axes": axes}
+    return {"kind": "axes", "name": name_of(path.resolve()), "time": time, "axes": axes}
 
 
 def _unit_of(place: Place, x: Array) -> tuple[str, float, str]:

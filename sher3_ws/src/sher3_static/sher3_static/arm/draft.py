@@ -13,7 +13,7 @@ from typing import Any
 from xml.etree import ElementTree
 
 import numpy as np
-from sher3_machines.drafting.draft import written
+from sher3_machines.drafting.draft import name_of, unused, written
 from sher3_machines.drafting.guesses import position_unit
 from sher3_machines.drafting.names import bare_and_unit, tells_time
 from sher3_machines.intake.kind import Draft
@@ -57,16 +57,14 @@ def draft_postures(path: Path, tables: Tables, model: Path) -> Draft | None:
         f"postures: {', '.join(own)} are the joints, {', '.join(point)} the measured point; without a time",
         f"noise of {NOISE:g} m is a placeholder: state that of the instrument",
     ]
-    data: dict[str, Any] = {"kind": "arm", "name": re.sub(r"\W+", "_", path.stem)}
+    data: dict[str, Any] = {"kind": "arm", "name": name_of(path)}
     slides = {joint.get("name") for joint in root.iter("joint") if joint.get("type") == SLIDES}
     data["joint_positions"] = [
         _column(n, columns, joint in slides) for n, (joint, _, _) in zip(own, chain, strict=True)
     ]
     data["positions"] = [_column(name, columns, True) for name in point]
     data |= {"noise": NOISE, "urdf": str(model.resolve()), "base_link": chain[0][1], "tip_link": chain[-1][2]}
-    rest = [name for name in tables if name not in (*own, *point)]
-    guesses += [f"not used: {', '.join(rest)}"] if rest else []
-    return written(data, guesses)
+    return written(data, [*guesses, *unused(tables, (*own, *point))])
 
 
 def points(columns: Mapping[str, Any]) -> dict[tuple[str, str], list[str]]:

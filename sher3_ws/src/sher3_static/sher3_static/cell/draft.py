@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import re
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from sher3_diagnosis.channel import Array
-from sher3_machines.drafting.draft import written
+from sher3_machines.drafting.draft import name_of, unused, written
 from sher3_machines.drafting.names import bare_and_unit, named, tells_time, vocabulary, words_of
 from sher3_machines.intake.fields import Column
 from sher3_machines.intake.kind import Draft
@@ -67,10 +66,9 @@ def draft_cell(path: Path, tables: Tables) -> Draft | None:
     x, y = _both(as_weight(applied) * applied.scale * tables[load], tables[read])
     slope = float(f"{np.polyfit(y, x, 1)[0]:.6g}")
     guesses.append(f"the reading is {read!r}; its `factor` is the slope of this table: state that of the data sheet")
-    left = [n for n in tables if n not in found]
-    guesses += [f"not used: {', '.join(left)}"] if left else []
+    guesses += unused(tables, found)
     measures = "torque" if str(applied.unit).endswith("N*m") else "force"
-    data: dict[str, Any] = {"kind": "load_cell", "name": re.sub(r"\W+", "_", path.stem), "measures": measures}
+    data: dict[str, Any] = {"kind": "load_cell", "name": name_of(path), "measures": measures}
     data["applied"] = {"column": load, "unit": applied.unit}
     data["reading"] = {"column": read, "unit": "1", "factor": slope, "override": True}
     return written(data, guesses)

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 from sher3_diagnosis.channel import Array
-from sher3_machines.drafting.draft import ROTARY_UNITS, written
+from sher3_machines.drafting.draft import ROTARY_UNITS, name_of, unused, written
 from sher3_machines.drafting.guesses import WIDEST_ROOM, reach
 from sher3_machines.drafting.names import (
     ASKED,
@@ -91,10 +91,8 @@ def draft_test(path: Path, tables: Tables) -> Draft | None:
         axis["temperature"] = {"column": warm, "unit": "degC"}
         used.add(warm)
         guesses.append(f"temperature is {warm!r}, because of its name")
-    left = [n for n in tables if n not in used]
-    guesses += [f"not used: {', '.join(left)}"] if left else []
-    name = re.sub(r"\W+", "_", path.stem)
-    return written({"kind": "positioning", "name": name, "axes": [axis]}, guesses)
+    data = {"kind": "positioning", "name": name_of(path), "axes": [axis]}
+    return written(data, [*guesses, *unused(tables, used)])
 
 
 def one(flat: Tables, words: Collection[str], used: Collection[str] = ()) -> str | None:

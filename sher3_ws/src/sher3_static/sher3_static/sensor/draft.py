@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from sher3_machines.drafting.draft import written
+from sher3_machines.drafting.draft import name_of, unused, written
 from sher3_machines.drafting.names import bare_and_unit, tells_time
 from sher3_machines.intake.kind import Draft
 from sher3_machines.intake.spelling import bare
@@ -49,14 +49,13 @@ def draft_sensor(path: Path, tables: Tables) -> Draft | None:
         return None
     guesses = [f"a force sensor: {part} is {', '.join(columns)}" for part, columns in found.items()]
     each: dict[str, Any] = {p: [_column(n, PARTS[p][2], guesses) for n in columns] for p, columns in found.items()}
-    data: dict[str, Any] = {"kind": "force_sensor", "name": re.sub(r"\W+", "_", path.stem)}
+    data: dict[str, Any] = {"kind": "force_sensor", "name": name_of(path)}
     data |= {"force": each["force"], "torque": each["torque"], "orientation": {"quaternion": each["quaternion"]}}
     guesses.append(
         "what hangs on it is found from the readings, and a wrong scale of the sensor is then not told: state "
         "`load: {mass: kg, centre: [m, m, m]}`"
     )
-    left = [n for n in tables if not any(n in columns for columns in found.values())]
-    return written(data, [*guesses, *([f"not used: {', '.join(left)}"] if left else [])])
+    return written(data, [*guesses, *unused(tables, [n for columns in found.values() for n in columns])])
 
 
 def _column(name: str, unit: str, guesses: list[str]) -> dict[str, str]:
