@@ -46,7 +46,8 @@ reach("disable", "DISABLED")
 def running(domain):
     """A robot, and the program that speaks CRTK beside it."""
     processes = []
-    for command in (["up", "--patient", "--duration", "120"], ["state", "--crtk", "--for", "120"]):
+    up = ["up", "--patient", "--layout", "composed", "--duration", "120"]
+    for command in (up, ["state", "--crtk", "--for", "120"]):
         processes.append(subprocess.Popen(sher3_command(*command, "--domain", str(domain)), env=child_environment()))
         time.sleep(2.0)
     try:

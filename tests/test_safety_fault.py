@@ -38,7 +38,7 @@ def test_without_a_robot_on_mocks_nothing_is_injected(sher3, domain):
 
 @pytest.mark.flaky(reruns=2)
 def test_a_running_robot_takes_a_fault_and_refuses_another(sher3, domain):
-    command = sher3_command("up", "--patient", "--domain", str(domain), "--realtime", "0")
+    command = sher3_command("up", "--patient", "--layout", "composed", "--domain", str(domain), "--realtime", "0")
     up = subprocess.Popen(command, env=child_environment(), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     try:
         line = up.stdout.readline()

@@ -51,6 +51,8 @@ def heard(**more):
 def test_the_snapshot_by_hand():
     snapshot = heard()
     assert snapshot.force == pytest.approx([1.5, 0, 0])
+    quarter = PoseSample(1000 * MS, (0.20001, 0.0, 0.1), (0.0, 0.0, 2.0, 2.0))  # about z, not of unit length
+    assert heard(measured_cp=quarter).force == pytest.approx([0, 1.5, 0])
     assert snapshot.speed == pytest.approx(0.001), "10 µm in 10 ms"
     assert snapshot.cap == 0.005 and snapshot.pedal == 0.5
     assert snapshot.remote_centre == (0.2, 0.0, 0.1)

@@ -18,8 +18,8 @@ from sher3_runtime import environment
 from sher3_runtime.execution.spinning import make_executor
 from sher3_runtime.ports import NODE_OPTIONS, advertise, ports, subscribe
 
-PATIENCE = 5.0
-"""Longest wait for the robot and for its answer, s."""
+PATIENCE, TURN = 5.0, 0.02
+"""Longest wait on an idle computer for the robot, and for its answer; and for one turn of the executor [s]."""
 ANSWER = "plant: faults"
 
 
@@ -44,9 +44,9 @@ def inject(request: FaultRequest, domain: int) -> str:
         subscribe(node, "diagnostics", lambda sample: heard.append(sample) if sample.name == ANSWER else None)
         publish = advertise(node, "mock/fault")
         executor = make_executor([node])
-        _wait(executor, lambda: _met(node), f"no robot on mocks runs on domain {domain}; hardware takes no faults")
+        wait_for(executor, lambda: _met(node), f"no robot on mocks runs on domain {domain}; hardware takes no faults")
         publish(TextSample(request.to_json()))
-        _wait(executor, lambda: bool(heard), "the plant does not answer")
+        wait_for(executor, lambda: bool(heard), "the plant does not answer")
         executor.shutdown()
     finally:
         node.destroy_node()
@@ -69,9 +69,15 @@ def _met(node: Node) -> bool:
     )
 
 
-def _wait(executor: Executor, condition: Callable[[], bool], otherwise: str) -> None:
-    deadline = time.monotonic() + PATIENCE
+def wait_for(executor: Executor, condition: Callable[[], bool], otherwise: str) -> None:
+    """Wait until a condition holds: a busy computer, whose turns last longer, is given as many turns.
+
+    Raises:
+        StartError: neither `PATIENCE` nor as many turns as an idle computer makes in it were enough.
+    """
+    deadline, turns = time.monotonic() + PATIENCE, 0
     while not condition():
-        if time.monotonic() > deadline:
+        if time.monotonic() > deadline and turns * TURN > PATIENCE:
             raise StartError(otherwise, limit=f"{PATIENCE:g} s", remedy="start `sher3 up`, or name its --domain")
-        executor.spin_once(0.02)
+        executor.spin_once(TURN)
+        turns += 1
