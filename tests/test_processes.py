@@ -44,9 +44,24 @@ class Robot:
     def children(self) -> list[psutil.Process]:
         return psutil.Process(self.process.pid).children(recursive=True)
 
+    def work(self, seconds: float) -> None:
+        """Wait until its processes have had that much of the processor, which a busy computer gives them later.
+
+        In half a second eight processes recorded 200 to 220 ticks beside a load of 17, where one second gave 79.
+        """
+        children = self.children()
+        begin, end = _processor_time(children), time.monotonic() + PATIENCE
+        while _processor_time(children) < begin + seconds:
+            assert time.monotonic() < end, "the robot's processes do not run"
+            time.sleep(0.05)
+
     def finish(self) -> tuple[int, str, str]:
         out, err = self.process.communicate(timeout=PATIENCE)
         return self.process.returncode, out, err
+
+
+def _processor_time(processes: list[psutil.Process]) -> float:
+    return sum(sum(process.cpu_times()[:2]) for process in processes)
 
 
 STRANGER = """
@@ -87,7 +102,7 @@ def test_ready_line_then_ctrl_c_stops_everything(robot, bag_folder):
     assert re.match(r"ready: 8 processes at 500 Hz on mocks in \d+\.\d\d s", running.ready())
     children = running.children()
     assert len(children) == 9, "the eight of the robot, and the terminal's listener"
-    time.sleep(1.0)
+    running.work(0.6)
     running.process.send_signal(signal.SIGINT)
     status, out, _ = running.finish()
     assert status == 0

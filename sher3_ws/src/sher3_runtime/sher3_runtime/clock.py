@@ -40,10 +40,6 @@ class Clock:
         """Return the time in ns of the system clock's epoch."""
         return monotonic_ns() + self.offset_ns
 
-    def next_tick(self, after_ns: int) -> int:
-        """Return the first grid stamp later than `after_ns` and not before `start_ns`."""
-        return max((after_ns // self.period_ns + 1) * self.period_ns, self.start_ns)
-
 
 class SteppedClock(Clock):
     """A clock that only moves when it is told to; for tests and for replay faster or slower than real time."""

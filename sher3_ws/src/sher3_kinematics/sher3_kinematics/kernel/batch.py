@@ -17,7 +17,6 @@ from sher3_kinematics.kernel.robot import (
     tip_jacobian_into,
     tip_pose_into,
 )
-from sher3_kinematics.kernel.tilt import tilt_angle, tilt_slider
 
 Array = np.ndarray
 
@@ -37,24 +36,6 @@ def delta_inverse_batch(p: KernelParameters, centres: Array) -> Array:
     q = np.empty((centres.shape[0], 3))
     for i in range(centres.shape[0]):
         q[i, 0], q[i, 1], q[i, 2] = delta_inverse(p, centres[i, 0], centres[i, 1], centres[i, 2])
-    return q
-
-
-@compiled_ieee
-def tilt_angle_batch(p: KernelParameters, q: Array) -> Array:
-    """Return the tilt angles (n,) [rad] for actuator positions (n,) [m]."""
-    angles = np.empty(q.shape[0])
-    for i in range(q.shape[0]):
-        angles[i] = tilt_angle(p, q[i])
-    return angles
-
-
-@compiled_ieee
-def tilt_slider_batch(p: KernelParameters, angles: Array) -> Array:
-    """Return the actuator positions (n,) [m] for tilt angles (n,) [rad]."""
-    q = np.empty(angles.shape[0])
-    for i in range(angles.shape[0]):
-        q[i] = tilt_slider(p, angles[i])
     return q
 
 
