@@ -105,7 +105,7 @@ def find(machine: Machine[R, E], evidence: E, without: Collection[str], say: Say
 
 
 def nominal(evidence: Evidence) -> dict[Channel, dict[int, Array]]:
-    """Return what the terms that are no causes leave of every channel, per run; empty where there are none."""
+    """Return the residual (n, d) of every channel and run beyond the terms that are no causes; empty without any."""
     if not evidence.nuisance:
         return {}
     null = evidence.null()

@@ -57,7 +57,7 @@ def tables_at(record: object) -> object:
 
 
 def columns_of(table: Any) -> dict[str, Array]:
-    """Return the columns of a table by name, times in s; texts are left out. An index of stamps is the time."""
+    """Return the columns (n, ...) of a table by name, times in s, an index of stamps as the time, texts left out."""
     names = list(table) if isinstance(table, Mapping) else list(table.columns)
     found = {str(name): _as_numbers(table[name]) for name in names}
     index = np.asarray(getattr(table, "index", [])) if not isinstance(table, Mapping) else np.array([])

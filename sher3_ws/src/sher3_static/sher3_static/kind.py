@@ -78,7 +78,7 @@ class TableKind(Kind[D, Readings]):
         return StaticTest(self, self.known(description))
 
     def pack(self, run: Readings) -> Mapping[str, Array]:
-        """Return the columns."""
+        """Return the columns by name, a row (n, ...) for each reading."""
         return run.columns
 
     def unpack(self, name: str, arrays: Tables, notes: Sequence[str]) -> Readings:

@@ -35,7 +35,7 @@ class ChainKind(Kind[D, AxesRun]):
         return parts_of_record(name, tables, description, records)
 
     def pack(self, run: AxesRun) -> Mapping[str, Array]:
-        """Return the period and every signal."""
+        """Return the period (1,), s, and every signal (n,) as `JOINT/SIGNAL`, in the units of the description."""
         signals = {f"{joint}/{k}": x for joint, found in run.signals.items() for k, x in found.items()}
         return {"period": np.array([run.period]), **signals}
 

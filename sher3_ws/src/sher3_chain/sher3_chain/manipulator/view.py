@@ -210,7 +210,7 @@ class MotionView(ChainView):
 
     @cached_property
     def regressor_of_joints(self) -> Array:
-        """The same on every joint."""
+        """Force per inertial parameter on every joint, (g, k, 10 links)."""
         return self.model.regressor(*self._of_links)
 
     def _on_motors(self, forces: Array) -> Array:

@@ -44,7 +44,7 @@ class Fit:
         return slice(start, start + self.terms[index].width)
 
     def of(self, index: int) -> Array:
-        """Coefficients of one term."""
+        """Return the coefficients (p,) of one term."""
         return self.coefficients[self._columns(index)]
 
     def loro_of(self, index: int) -> Array:

@@ -32,7 +32,7 @@ class Blocks:
 
     @cached_property
     def of_runs(self) -> list[Array | None]:
-        """The block of every run."""
+        """Return the block (n, p) of every run; None where the channel has no samples."""
         return [self._of(r) if self.channel in n else None for r, n in enumerate(self.term.samples)]
 
     def _of(self, run: int) -> Array:

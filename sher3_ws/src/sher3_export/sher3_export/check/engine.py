@@ -86,7 +86,7 @@ def copied(root: Element) -> Element:
 
 
 def windows(record: Recorded) -> tuple[NDArray[np.int64], int]:
-    """Return the samples at which windows start, and the samples of a window."""
+    """Return the samples (k,) at which windows start, and how many samples a window has."""
     n = len(next(iter(record.tracks.values())).position)
     length = min(n - 1, max(2, round(WINDOW / record.period)))
     return np.unique(np.linspace(1, n - length, min(MOST, max(1, (n - 1) // length))).astype(int)), length

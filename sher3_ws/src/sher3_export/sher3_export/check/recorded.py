@@ -110,7 +110,7 @@ def track_of(run: AxesRun, axis: Axis, q: Array, drive: Array | None, late: bool
 
 
 def drive_of(signals: Mapping[str, Array], axis: Axis, late: bool) -> Array | None:
-    """Return the force, or None where nothing drives the joint."""
+    """Return the force (n,), N or N m, or None where nothing drives the joint."""
     if axis.free and "effort" not in signals:
         return None
     if "command" in signals and (late or "effort" not in signals):

@@ -154,7 +154,7 @@ class SherView(GridView):
         return recorded_at(self, channel)
 
     def quantities(self, site: str) -> dict[str, Array]:
-        """Return what a place feels of the quantities that laws may depend on."""
+        """Return what a place feels of the quantities (g,) that laws may depend on, by name, SI units."""
         return quantities(self, site)
 
     def everything(self) -> Array:

@@ -79,7 +79,7 @@ def left(
     drives: Mapping[str, Driven],
     scale: float,
 ) -> Array:
-    """Return the share of each joint's effort that model and friction leave, with angles times a scale.
+    """Return the share (joints,) of each joint's effort that model and friction leave, with angles times a scale.
 
     NaN where no effort is known. In radians recorded efforts may be in a unit of their own.
     """

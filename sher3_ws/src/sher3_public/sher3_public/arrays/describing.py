@@ -87,7 +87,7 @@ def described(source: Source, runs: Sequence[Arrays], stated: Stated) -> Describ
 
 
 def without_free(source: Source, run: Arrays, stated: Sequence[str], guesses: list[str]) -> Arrays:
-    """Return a run whose positions are MuJoCo's whole `qpos` without those of free bodies."""
+    """Return a run with the positions (n, joints), where they were MuJoCo's whole `qpos` (n, nq) with free bodies."""
     model, known = source.bodies.mujoco, list(source.bodies.joints)
     if stated or model is None or run.position.shape[1] != model.nq or model.nq == len(known):
         return run

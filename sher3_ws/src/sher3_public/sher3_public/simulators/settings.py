@@ -41,7 +41,7 @@ class Played:
 
 
 def played(model: Any, table: Mapping[str, Array]) -> Played | None:
-    """Return what a replay needs; None where the trace has not all of it in the model's order."""
+    """Return what a replay needs of the columns (n, ...) of a trace; None where it lacks some in the model's order."""
     control, position, velocity = (
         columns_named(table, names) for names in (("ctrl", "control"), ("qpos", "position"), ("qvel", "velocity"))
     )

@@ -63,20 +63,20 @@ class PoseSight(Sight):
     told, moved = range(12), range(6)
 
     def floor(self, noise: float, noise_rotation: float | None) -> Array:
-        """Return the noise of positions and of orientations, which without one are not judged."""
+        """Return the noise (6,) of positions, m, and of orientations, rad, which without one are not judged."""
         return np.repeat([noise, noise_rotation or NOT_JUDGED], 3)
 
     def start(self, tip: Array, measured: Array, run: Labels) -> tuple[Array, Array]:
-        """Return the frames of the linear equations; raises MachineError where the postures do not tell them."""
+        """Return the frames (4, 4) of the linear equations; raises MachineError where the postures do not tell them."""
         return hand_eye(tip, measured)
 
     def error(self, pose: Array, measured: Array) -> Array:
-        """Return the shift, m, and the rotation vector, rad."""
+        """Return the shift, m, and the rotation vector, rad, (n, 6)."""
         turn = measured[:, :3, :3] @ np.swapaxes(pose[:, :3, :3], 1, 2)
         return np.concatenate([measured[:, :3, 3] - pose[:, :3, 3], Rotation.from_matrix(turn).as_rotvec()], axis=1)
 
     def seen(self, change: Array, pose: Array) -> Array:
-        """Return all of it."""
+        """Return all of the change, (n, 6, p)."""
         return change
 
 
@@ -87,7 +87,7 @@ class PositionSight(Sight):
     told, moved = (0, 1, 2, 3, 4, 5, 9, 10, 11), range(6)
 
     def floor(self, noise: float, noise_rotation: float | None) -> Array:
-        """Return the noise of a position."""
+        """Return the noise (3,) of a position, m."""
         return np.repeat(noise, 3)
 
     def start(self, tip: Array, measured: Array, run: Labels) -> tuple[Array, Array]:
@@ -101,11 +101,11 @@ class PositionSight(Sight):
         return transform((-turn @ found[12:]).tolist(), turn), transform(found[9:12])
 
     def error(self, pose: Array, measured: Array) -> Array:
-        """Return the shift, m."""
+        """Return the shift (n, 3), m."""
         return measured - pose[:, :3, 3]
 
     def seen(self, change: Array, pose: Array) -> Array:
-        """Return the shift."""
+        """Return the shift (n, 3, p) of the change."""
         return change[:, :3]
 
 
@@ -116,7 +116,7 @@ class LengthSight(Sight):
     told, moved = (3, 4, 5, 9, 10, 11), ()
 
     def floor(self, noise: float, noise_rotation: float | None) -> Array:
-        """Return the noise of a length."""
+        """Return the noise (1,) of a length, m."""
         return np.array([noise])
 
     def start(self, tip: Array, measured: Array, run: Labels) -> tuple[Array, Array]:
@@ -135,11 +135,11 @@ class LengthSight(Sight):
         return transform(-best[3:6]), transform(best[:3])
 
     def error(self, pose: Array, measured: Array) -> Array:
-        """Return the length, m."""
+        """Return by how much the length is off, (n, 1), m."""
         return (measured - np.linalg.norm(pose[:, :3, 3], axis=1))[:, None]
 
     def seen(self, change: Array, pose: Array) -> Array:
-        """Return the shift along the cable."""
+        """Return the shift along the cable, (n, 1, p)."""
         along = pose[:, :3, 3] / np.linalg.norm(pose[:, :3, 3], axis=1, keepdims=True)
         return np.einsum("ni,nip->np", along, change[:, :3])[:, None, :]
 

@@ -21,7 +21,7 @@ def held_out(evidence: TableEvidence, after: Fit) -> Array:
 
 
 def seen(evidence: TableEvidence, after: Fit) -> Array:
-    """Return the same under coefficients fitted to all postures."""
+    """Return the errors (n, 3) or (n, 1), m, under coefficients fitted to all postures."""
     channel, floor = evidence.table.channel, evidence.table.floor
     out = []
     for r, target in enumerate(evidence.data.target):

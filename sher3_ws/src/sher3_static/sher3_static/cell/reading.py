@@ -82,7 +82,7 @@ def unloading(applied: Array) -> Array:
 
 
 def scatter(view: CellView, reading: Array, run: Labels) -> float:
-    """Return the standard deviation of a reading beyond a zero that wanders and is another one in each run.
+    """Return the standard deviation of a reading (n,), in its unit, beyond a zero that wanders and differs by run.
 
     What differs at one force reached from one side, where forces were repeated; else what no curve of third order in
     the force, of its own for each direction, explains.

@@ -80,12 +80,12 @@ def counted_on(runs: Sequence[Readings]) -> list[Readings]:
 
 
 def parts_of(cycle: Array) -> Labels:
-    """Return the label of the rows that are held out together: each cycle; of one or two cycles every fourth row."""
+    """Return labels (n,) of rows that are held out together: the cycle (n,); of one or two cycles every fourth row."""
     return cycle if len(np.unique(cycle)) > 2 else np.arange(len(cycle)) % PARTS
 
 
 def scatter(name: str, rows: dict[str, Array], target: Array) -> float:
-    """Return the standard deviation of a reading from what cycles differ by beyond an offset and a scale of each.
+    """Return the standard deviation, m or rad, by which cycles differ beyond an offset and a scale of each.
 
     Raises:
         MachineError: there are too few repeats.

@@ -89,6 +89,6 @@ def away_from_poles(angle: Array) -> Mask:
 
 
 def innovation(radius: Array) -> float:
-    """Return the standard deviation of a radius from its second differences, which smooth errors hardly have."""
+    """Return the standard deviation of a radius (n,), m, from second differences, which smooth errors hardly have."""
     second = np.diff(radius, 2)
     return max(RESOLVED, float(noise_of_bends(second - np.median(second))))

@@ -41,7 +41,7 @@ def read_tests(name: str, tables: Tables, machine: PositioningDescription) -> Re
 
 
 def axis_rows(run: str, tables: Tables, test: AxisTest, notes: list[str]) -> dict[str, Array]:
-    """Return the rows of one axis; raises MachineError."""
+    """Return the rows (n,) of one axis by column; raises MachineError where there are too few or unlikely ones."""
     if test.passes is not None:
         return pass_rows(run, tables, test, test.passes)
     target = pick(test.target, tables, run)
@@ -75,7 +75,7 @@ def axis_rows(run: str, tables: Tables, test: AxisTest, notes: list[str]) -> dic
 
 
 def pass_rows(run: str, tables: Tables, test: AxisTest, passes: Sequence[Column]) -> dict[str, Array]:
-    """Return the rows of a table with a column for each pass: from below, from above and so on, in turn."""
+    """Return the rows (n,) of a table with a column for each pass: from below, from above and so on, in turn."""
     target = pick(test.target, tables, run)
     _one_column(run, test.target, target)
     _enough(run, test.name, len(target) * len(passes), target)
@@ -136,7 +136,7 @@ def cycles(target: Array, direction: Array) -> Array:
 
 
 def circle_rows(run: str, tables: Tables, test: CircleTest) -> dict[str, Array]:
-    """Return the points of one circle; raises MachineError."""
+    """Return the points (n,) of one circle, m; raises MachineError where they are too few or are no circle."""
     first, second = (test.x, test.y) if test.x is not None else (test.angle, test.deviation)
     assert first is not None and second is not None
     x = pick(first, tables, run)

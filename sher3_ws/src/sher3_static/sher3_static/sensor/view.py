@@ -123,7 +123,7 @@ class TurnedView(SensorView):
         return np.hstack([self.mass * gravity, np.cross(frames()[frame].turn @ self.moment, gravity)])
 
     def pulls(self, frame: int) -> Sequence[tuple[Array, Array]]:
-        """Return forces and gravity."""
+        """Return forces, N, and gravity in the frame, m/s^2, (g, 3) each."""
         return [(self.reading[:, :3], frames()[frame].gravity(self.orientation))]
 
     def inputs(self, actuator: str) -> Array:
@@ -173,7 +173,7 @@ class AppliedView(SensorView):
         return sign * np.hstack([self.applied[:, :3] @ turn.T, self.applied[:, 3:] @ turn.T])
 
     def pulls(self, frame: int) -> Sequence[tuple[Array, Array]]:
-        """Return forces and torques: weights that pull along one line alone tell no turn about it."""
+        """Return forces and torques, (g, 3) each: weights that pull along one line alone tell no turn about it."""
         nominal = self.wrench(frame)
         return [(self.reading[:, part], nominal[:, part]) for part in (slice(0, 3), slice(3, 6))]
 

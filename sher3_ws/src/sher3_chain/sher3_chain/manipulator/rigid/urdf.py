@@ -69,7 +69,7 @@ class _Reader:
         self._other: dict[str, str] = {}
 
     def tree(self) -> Tree:
-        """Return the tree."""
+        """Return the tree; raises MachineError where the links are not one tree."""
         if len(self._roots) != 1:
             value = ", ".join(self._roots) or "none"
             raise self._error("needs one link that no joint moves", value, "one", "join its links to one tree")

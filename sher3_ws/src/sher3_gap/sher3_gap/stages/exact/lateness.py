@@ -79,7 +79,7 @@ class Lateness:
 
     @property
     def rest(self) -> Array:
-        """Latencies of the ticks that were not held for a period or more."""
+        """Latencies (m,), periods, of the ticks that were not held for a period or more."""
         return self.timing.samples[self.timing.samples - self.held <= WHOLE]
 
     @property

@@ -43,7 +43,7 @@ def transport_error(run: RunSignals) -> Array | None:
 
 
 def delayed(x: Array, ticks: int) -> Array:
-    """Shift down by `ticks` samples; before its first sample a demand is zero."""
+    """Return x (n, k) as it was `ticks` samples before; before its first sample a demand is zero."""
     out = np.zeros_like(x)
     if ticks < len(x):
         out[ticks:] = x[: len(x) - ticks]

@@ -175,7 +175,7 @@ def telling(ticks: Sequence[Array]) -> Array:
 
 
 def usual_of(ticks: Sequence[Array]) -> float:
-    """Return the median latency of the ticks that tell one, periods; 0 where none does."""
+    """Return the median latency, periods, of the ticks (n,) of all runs that tell one; 0 where none does."""
     every = telling(ticks)
     return float(np.median(every)) if len(every) else 0.0
 

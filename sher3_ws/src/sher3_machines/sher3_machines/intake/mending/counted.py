@@ -77,5 +77,5 @@ def _counted(t: Array, x: Array, v: Array, held: bool) -> Array | None:
 
 
 def rms(x: Array) -> float:
-    """Return the root mean square of all numbers of an array."""
+    """Return the root mean square of all numbers of an array of any shape."""
     return float(np.sqrt(np.mean(x**2)))

@@ -43,7 +43,7 @@ def read_hdf5(path: Path) -> dict[str, Array]:
 
 
 def read_raw(path: Path, raw: bytes) -> dict[str, Array]:
-    """Return what `read_hdf5` does, of a file that is in memory."""
+    """Return what `read_hdf5` does, of a file that is in memory; raises the same errors."""
     if find_spec("h5py") is None:
         remedy = "install sher3[hdf5], or save it as npz or csv, in MATLAB with the option -v7"
         raise no_reader(path, "HDF5", "h5py", remedy)

@@ -25,12 +25,12 @@ SHOWN = 100
 
 
 def read_npz(path: Path) -> dict[str, Array]:
-    """Return the numeric arrays of a file."""
+    """Return the numeric arrays of a file by name."""
     return numeric(read_arrays(path, max_bytes=MAX_BYTES))
 
 
 def read_npy(path: Path) -> dict[str, Array]:
-    """Return the fields of a record array, the columns of a table as `c0`, `c1`, ..., or more axes as `array`."""
+    """Return the fields (n, ...) of a record array, columns (n,) of a table as `c0`, `c1`..., more axes as `array`."""
     x = read_array(path, MAX_BYTES)
     if x.dtype.names:
         return numeric({name: x[name] for name in x.dtype.names})
@@ -42,6 +42,9 @@ def read_lists(path: Path) -> dict[str, Array]:
 
     A list of objects at the top is a table too, whose columns have the keys' names. The answer of an EPICS archiver is
     a table for each of its channels.
+
+    Raises:
+        ValueError: the top level is neither an object nor a list.
     """
     data = read_json(path, MAX_TEXT_BYTES)
     if is_archive(data):
