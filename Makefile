@@ -17,13 +17,13 @@ export PYTHONDONTWRITEBYTECODE =
 demo: $(READY)  ## scripted surgeon on mocks: recorded, analysed, shown
 	$(BIN)/sher3 demo
 
-test: test-wall lint test-all-but-wall  ## lint, types and every test but the slow ones
+test: test-wall lint $(VENV)/.plants test-all-but-wall  ## lint, types and every test but the slow ones
 
 # Tests in wall time (graph and flaky) run beside lint and all others, which give way to them: processes of a robot that
 # wake up a thousand times a second leave most of two cores idle, and `nice` lets them have a core the moment they want
 # it. In the order of the files: long ones come first, so that neither of the two waits for the other at the end.
 .PHONY: test-all-but-wall test-wall
-test-all-but-wall: $(READY) $(VENV)/.plants lint
+test-all-but-wall: $(READY) lint
 	nice -n 5 $(PYTEST) -n 2 --dist loadscope --no-loadscope-reorder \
 		-m "not slow and not (graph and flaky)"
 
@@ -72,7 +72,7 @@ $(VENV)/.kernels: $(INSTALLED)
 	$(BIN)/python -m sher3_gap_cli.warm
 	touch $@
 
-# The truth plants of the challenge, which tests alone need at once.
+# The truth plants of the challenge, which tests alone need at once: beside them, long before the first one asks.
 $(VENV)/.plants: $(VENV)/.kernels
 	nice -n 5 $(BIN)/python -m sher3_challenge.warm
 	touch $@
