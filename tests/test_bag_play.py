@@ -1,7 +1,7 @@
 """A recording played onto a running robot by a foreign player, as `ros2 bag play` does: it moves nothing.
 
-Two names are commands of the user in the graph and the robot's own output in recordings (`servo_cv`, `servo_jv`), and
-all others are streams of the robot itself.
+Its messages go by the graph's post, byte by byte as they were recorded. Two names are commands of the user in the graph
+and the robot's own output in recordings (`servo_cv`, `servo_jv`), and all others are streams of the robot itself.
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ class Player(Node):
 @pytest.fixture(scope="module")
 def recording() -> dict[int, list[tuple[str, bytes]]]:
     """Return the messages of a session in which a hand moved the robot, by tick."""
-    with Graph(period=ROBOT.control_period) as graph:
+    with Graph(period=ROBOT.control_period, middleware=False) as graph:
         rig = RobotRig(graph)
         with recorded(graph, "bag_play_source", robot=ROBOT) as recorder:
             rig.play(Script.model_validate(SURGEON))
@@ -72,7 +72,7 @@ def recording() -> dict[int, list[tuple[str, bytes]]]:
 @pytest.mark.parametrize("only", ["", "servo_jv", "servo_cv", "force/measured_cf", "supervisor/heartbeat"])
 def test_a_recording_that_is_played_onto_a_robot_at_rest_moves_nothing(recording, only, bag_folder):
     messages = {tick: [m for m in sent if not only or m[0] == f"/sher3/{only}"] for tick, sent in recording.items()}
-    with Graph(period=ROBOT.control_period) as graph:
+    with Graph(period=ROBOT.control_period, middleware=False) as graph:
         operator, rig = graph.add(OperatorNode), RobotRig(graph)
         with recorded(graph, bag_folder.name, robot=ROBOT):
             graph.step(60)

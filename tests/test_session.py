@@ -24,9 +24,9 @@ def session(*steps: dict) -> Script:
     return Script.model_validate({"schema": "sher3.teleop/1", "steps": [*start, *steps]})
 
 
-def play(script: Script, request: pytest.FixtureRequest, effects=()):
-    """Play a script, record it, and return the recorded run."""
-    with Graph(period=ROBOT.control_period) as graph:
+def play(script: Script, request: pytest.FixtureRequest, effects=(), middleware=False):
+    """Play a script, record it, and return the recorded run; by the middleware where what it carries is asked about."""
+    with Graph(period=ROBOT.control_period, middleware=middleware) as graph:
         rig = RobotRig(graph, effects)
         with recorded(graph, request.node.nodeid.split("::")[-1], robot=ROBOT) as recorder:
             rig.play(script)
@@ -53,7 +53,7 @@ def test_the_tip_follows_the_hand(request):
 
 def test_every_tick_has_every_sample_with_its_stamp(request):
     """No sample is lost, late or stamped with another tick, in any stream that runs at the host rate."""
-    run = play(session({"name": "push", "duration": 0.5, "pedal": 1.0, "wrench": PUSH}), request)
+    run = play(session({"name": "push", "duration": 0.5, "pedal": 1.0, "wrench": PUSH}), request, middleware=True)
     streams = ("servo_jv", "drives/setpoint_jv", "drives/measured_js", "measured_js", "measured_cp", "pedal/measured")
     for topic in (*streams, "force/measured_cf", "servo_cv"):
         steps = np.diff(run[topic].stamp)
