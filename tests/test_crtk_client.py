@@ -16,7 +16,6 @@ from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from robot_rig import ROBOT, RobotRig
 from sensor_msgs.msg import JointState
-from sher3_bags.recording.live import recorded
 from sher3_runtime import Graph
 from std_msgs.msg import String
 
@@ -58,13 +57,12 @@ class CrtkClient(Node):
 
 
 @pytest.fixture
-def arm(bag_folder):
+def arm():
     with Graph(period=ROBOT.control_period) as graph:
         RobotRig(graph, robot=ROBOT)
-        with recorded(graph, bag_folder.name, robot=ROBOT):
-            client = graph.add(CrtkClient)
-            graph.step(100)
-            yield graph, client
+        client = graph.add(CrtkClient)
+        graph.step(100)
+        yield graph, client
 
 
 def enabled(graph, client):
