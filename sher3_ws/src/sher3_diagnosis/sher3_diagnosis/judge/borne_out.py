@@ -30,7 +30,7 @@ def significant_causes(
 
 
 def untold(evidence: Evidence, attribution: Attribution, index: int) -> bool:
-    """Return whether a cause explains less than laws may be off by, and a cause of another family as much."""
+    """Return whether a cause explains less than the error of laws, and a rival of another family explains as much."""
     family = attribution.fit.terms[index].effect.family
     others = any(f.terms[-1].effect.family != family for f in attribution.rivals[index])
     plain = is_plain(evidence, attribution.fit.terms[index])

@@ -30,7 +30,7 @@ def answer_to_exact(known: float, costs: Costs) -> str:
 
 
 def status_of(items: Sequence[Judged], exact: Sequence[float], same: float, costs: Costs) -> Status:
-    """Return the status.
+    """Return the status that costs least by the odds of all causes, gaps and exact stages.
 
     Args:
         items: causes and gaps with their odds.

@@ -69,5 +69,5 @@ class ComplianceBehindMotor(BehindMotor):
         return {**shape, "load_mass": mass, "stiffness": mass * (2.0 * np.pi * shape["frequency"]) ** 2}
 
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
-        """Return whether the load has such a mass, and its spring rings."""
+        """Return whether the load is a fair share of the axis' mass, and its spring rings."""
         return super().admissible(shape, coefficients) and shape["damping"] < self.MOST_DAMPED

@@ -47,11 +47,11 @@ class StructuralCompliance(Page):
         return [{"free": 0.0}, {"free": 1.0}]
 
     def bends(self, views: Sequence[RobotView], site: str, shape: Shape) -> list[Shape]:
-        """Return the same of an arm that stiffens."""
+        """Return the shape with each force at which the compliance of an arm that stiffens is halved."""
         return stiffened(shape)
 
     def signature(self, view: RobotView, site: str, shape: Shape) -> Signature:
-        """One column, or three."""
+        """Return displacement and turn of the tip (g, 6, 1) of the lumped arm, or (g, 6, 3) of three free springs."""
         lever, force = view.lever, view.path.contact
         moment = np.cross(lever, force)
         parts = np.zeros((len(lever), 6, 3))
@@ -77,7 +77,7 @@ class StructuralCompliance(Page):
         return {"fraction": share, **{n: float(c) for n, c in zip("xyz", coefficients, strict=True)}, **bend}
 
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
-        """Springs give way."""
+        """Return whether every spring gives way to the force: no compliance is below zero by more than 2 %."""
         return bool((coefficients >= -0.02 * np.abs(coefficients).max()).all())
 
 

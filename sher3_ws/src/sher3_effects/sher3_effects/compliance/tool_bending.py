@@ -34,7 +34,7 @@ class ToolBending(Page):
     finer = FINER
 
     def bends(self, views: Sequence[AxisView], site: str, shape: Shape) -> list[Shape]:
-        """Return the same of a tool that stiffens."""
+        """Return the shape with each force at which the compliance of a tool that stiffens is halved."""
         return stiffened(shape)
 
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:

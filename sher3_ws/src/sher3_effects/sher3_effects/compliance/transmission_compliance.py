@@ -57,7 +57,7 @@ class TransmissionCompliance(Page):
         return [*static, *ringing]
 
     def refine(self, shape: Shape) -> list[Shape]:
-        """Around the resonance."""
+        """Return shapes near this one: other frequencies, dampings and shares of the mass on the spring."""
         if not shape["frequency"]:
             return [{**shape, "load_mass": s} for s in (0.03, 0.06, 0.2, 0.5)]
         near = [{**shape, "frequency": shape["frequency"] * f} for f in (0.9, 0.95, 1.05, 1.1)]
@@ -221,7 +221,7 @@ class ComplianceOfJoint(TransmissionCompliance):
         return [{}]
 
     def bends(self, views: Sequence[AxisView], site: str, shape: Shape) -> list[Shape]:
-        """Return knees."""
+        """Return forces at which the spring has a knee."""
         return knees((v.inertial[:, v.row(site)] for v in views), shape)
 
     def refine(self, shape: Shape) -> list[Shape]:

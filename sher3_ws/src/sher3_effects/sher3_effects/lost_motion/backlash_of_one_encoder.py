@@ -85,7 +85,7 @@ class BacklashBehindMotor(BehindMotor):
         return {"width": shape["width"], "load_mass": mass, "load_friction": friction}
 
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
-        """Return whether the load has such a mass, and resists."""
+        """Return whether the load is a fair share of the axis' mass, and its friction resists."""
         return super().admissible(shape, coefficients) and bool((coefficients[1:] >= 0.0).all())
 
 

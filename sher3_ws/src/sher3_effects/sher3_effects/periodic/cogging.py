@@ -36,11 +36,11 @@ class Cogging(Page):
     ORDERS = (1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 14, 16, 18, 20, 22, 24)
 
     def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
-        """Periods per motor revolution."""
+        """Return numbers of periods per motor revolution."""
         return [{"periods_per_rev": float(n)} for n in self.ORDERS]
 
     def bends(self, views: Sequence[AxisView], site: str, shape: Shape) -> list[Shape]:
-        """Return the same number of teeth, unlike each other."""
+        """Return a motor of the same number of teeth, of which no two are alike: orders beside it show too."""
         return [{**shape, "unlike": 1.0}]
 
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:

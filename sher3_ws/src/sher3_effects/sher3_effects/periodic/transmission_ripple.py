@@ -40,7 +40,7 @@ class TransmissionRipple(Page):
     ORDERS = (1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 12, 14, 16, 18, 20)
 
     def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
-        """Periods per lead."""
+        """Return numbers of periods per lead."""
         return [{"periods_per_rev": float(n), "side": 0.0} for n in self.ORDERS]
 
     def refine(self, shape: Shape) -> list[Shape]:
@@ -55,7 +55,7 @@ class TransmissionRipple(Page):
         return found
 
     def bends(self, views: Sequence[AxisView], site: str, shape: Shape) -> list[Shape]:
-        """Return the same number of teeth, unlike each other."""
+        """Return a gear of the same number of teeth, of which no two are alike: orders beside it show too."""
         return [{"periods_per_rev": shape["periods_per_rev"], "side": 0.0, "unlike": 1.0}]
 
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:

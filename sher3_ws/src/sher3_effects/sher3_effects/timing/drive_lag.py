@@ -46,7 +46,7 @@ class DriveLag(Page):
         return [{"time_constant": t, "of_demand": d} for t in self.TIMES for d in (0.0, 1.0)]
 
     def bends(self, views: Sequence[RobotView], site: str, shape: Shape) -> list[Shape]:
-        """Return the same of a force that follows through two poles."""
+        """Return the shape with a second pole, for each of its shares of the time constant; a demand has none."""
         return [] if shape.get("of_demand") != 0.0 else [{**shape, "second": share} for share in self.SECOND]
 
     def signature(self, view: RobotView, site: str, shape: Shape) -> Signature:

@@ -27,7 +27,7 @@ class ForceNonlinearity(Page):
     siblings = {"force_scale": "grows up to the largest force", "force_hysteresis": "shows when unloading only"}
 
     def shapes(self, views: Sequence[CellView], site: str) -> list[Shape]:
-        """Return the orders that so many different forces can tell."""
+        """Return the orders, 2 and 3, that the number of different forces can tell."""
         told = len(np.unique(np.round(views[0].share, 2)))
         return [{"order": float(n)} for n in (2, 3) if told > n + 1]
 

@@ -87,5 +87,5 @@ LAGS = (3, 10, 30)
 
 
 def earlier(x: Array, samples: int) -> Array:
-    """Return (g, k) values of so many samples before; the first value before the run began."""
+    """Return x (g, k) as it was `samples` samples before; before the run began, its first row."""
     return np.concatenate([np.repeat(x[:1], samples, axis=0), x[: len(x) - samples]])
