@@ -50,7 +50,10 @@ def test_it_holds_every_file_of_the_packages(wheel: Path):
     data = [path for name in PACKAGES for path in (SOURCES / name / name).rglob("*") if path.is_file()]
     wanted = {path for path in {*FILES, *data} if "__pycache__" not in path.parts}
     names = {"/".join(path.relative_to(SOURCES).parts[1:]) for path in wanted}
-    assert not names - set(zipfile.ZipFile(wheel).namelist())
+    held = set(zipfile.ZipFile(wheel).namelist())
+    assert not names - held
+    tops = {name.split("/")[0] for name in held if ".dist-info/" not in name}
+    assert tops == {*PACKAGES, "sher3"}, "a folder beside the packages would be a package of the user's environment"
 
 
 def test_it_is_what_runs(installed: Path, tmp_path: Path):

@@ -93,3 +93,8 @@ def test_what_the_base_lacks_says_which_extra_brings_it(alone, tmp_path, words, 
     result = alone(*words.split())
     assert result.returncode == 2
     assert f"sher3[{extra}]" in result.stderr and "Traceback" not in result.stderr
+
+
+def test_what_is_no_case_is_said_all_the_same(alone):
+    result = alone("gap", "diagnose", "nowhere")
+    assert result.returncode == 2 and "nowhere: no such folder" in result.stderr

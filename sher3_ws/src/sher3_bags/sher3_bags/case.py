@@ -12,13 +12,13 @@ from sher3_common import make_folder, read_yaml
 from sher3_common.progress import Say, silent
 from sher3_description import Robot, load_robot
 
+from sher3_bags.case_file import CASE_FILE, case_file
 from sher3_bags.errors import CaseError
 from sher3_bags.reading import ROBOT_FILE, read_run
 from sher3_bags.run import Run
 from sher3_bags.writing import write_run
 
 SCHEMA = "sher3.case/1"
-CASE_FILE = "case.yaml"
 MAX_RUNS = 10_000
 
 
@@ -52,13 +52,7 @@ def read_case(path: str | Path, topics: Iterable[str] | None = None, *, check: b
         BagError, TopicError, InvalidRobot: a run or the robot file is wrong.
     """
     folder = Path(path)
-    file = folder / CASE_FILE
-    if not folder.exists():
-        raise CaseError("no such folder", path=folder, remedy="name a case folder")
-    if not folder.is_dir():
-        raise CaseError("a file, no case folder", path=folder, remedy=_remedy(folder))
-    if not file.is_file():
-        raise CaseError("no case.yaml", path=folder, remedy=_remedy(folder))
+    file = case_file(folder)
     document = read_yaml(file)
     if not isinstance(document, dict) or document.get("schema") != SCHEMA:
         found = document.get("schema") if isinstance(document, dict) else type(document).__name__
@@ -71,15 +65,6 @@ def read_case(path: str | Path, topics: Iterable[str] | None = None, *, check: b
     robot = load_robot(_inside(folder, file, document.get("robot")))
     say("reading the bags")
     return Case([_read_entry(folder, file, entry, wanted, check) for entry in entries], robot, folder)
-
-
-def _remedy(path: Path) -> str:
-    """Return how a case is made of what was named in its place: a recording of this robot, a log of any other."""
-    if path.suffix == ".mcap" or any(path.glob("*.mcap")):
-        return f"this is a recording; `sher3 gap case {path} --out CASE` makes a case of it"
-    if path.is_file():
-        return f"a log becomes a case by `sher3 gap describe {path}` and `sher3 gap import`"
-    return "name a case folder"
 
 
 def _read_entry(folder: Path, file: Path, entry: Any, topics: Sequence[str] | None, check: bool) -> Run:

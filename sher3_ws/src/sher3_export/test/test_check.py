@@ -36,7 +36,7 @@ def test_the_exported_model_follows_the_recorded_motion(case):
     """Half the square of the time times the missing force over the mass: 8 N on 12 kg are 21 mm in a quarter second."""
     found = check(case, Path("case"), None)
     (gap,) = found.gaps
-    assert gap.before > 5e-3 and gap.after < 0.02 * gap.before and gap.closure.value > 0.99
+    assert gap.unit == "m" and gap.before > 5e-3 and gap.after < 0.02 * gap.before and gap.closure.value > 0.99
 
 
 def test_numbers_that_were_not_applied_would_show(case):
@@ -71,7 +71,7 @@ def test_what_varies_from_window_to_window_is_as_wide_as_it_must_be():
 def test_records_of_several_rates_and_lengths_are_one_gap():
     before = [np.full((3, 125), 2.0), np.full((5, 50), 2.0)]
     after = [np.full((3, 125), 1.0), np.full((5, 50), 1.0)]
-    gap = checking.gap_of("joint", before, after)
+    gap = checking.gap_of("joint", "rad", before, after)
     assert (gap.before, gap.after) == (2.0, 1.0) and gap.closure.value == pytest.approx(0.75)
     assert engine.steps_of(0.005) == 5 and engine.steps_of(0.00333) == 4
 

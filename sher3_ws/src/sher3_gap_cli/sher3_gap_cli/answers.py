@@ -89,6 +89,9 @@ def diagnosed(task: Task, say: Say) -> Diagnosis[Any]:
         started = time.perf_counter()
         machine, runs = open_case(task.case)
         return diagnose(machine, runs, task.without, say, started, task.costs)
+    from sher3_bags.case_file import case_file
+
+    case_file(task.case)  # what is no case is said where the extra that reads bags is not installed
     from sher3_gap import diagnose_case
 
     return diagnose_case(task.case, task.robot, task.without, say, task.costs)

@@ -1,6 +1,7 @@
 """Every path for every kind of machine: an answer, or one sentence that says what to do; never a traceback."""
 
 import json
+import re
 from contextlib import suppress
 
 import pytest
@@ -85,6 +86,8 @@ def test_a_verdict_is_exported_and_an_experiment_proposed_or_refused_in_a_senten
     assert "sher3 gap export" in applied.output or kind in SENSORS  # the simulated robot has one, too
     checked = call("export", verdict, "--to", "mjcf", "--check", path, "--out", folder / "model.xml")
     assert (checked.exit_code == 0) == (kind in RUN), checked.output
+    if kind in RUN:
+        assert re.search(r"MuJoCo, \w+: [\d.]+ [mµ]?(m|rad) rms nominal, ", checked.output)
     assert "rivals" in answered("experiment", verdict, path, "-o", folder / "motion.csv")
 
 

@@ -2,13 +2,16 @@
 
 import subprocess
 import time
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from sher3_chain.manipulator.causes.links import OTHER_ROBOT
 from sher3_gap_cli.app import app
 from sher3_gap_cli.watch.judged import OK, STALE, WARN, judged, of_actuators
 from sher3_gap_cli.watch.trajectory import Point, set_points
 from sher3_gap_cli.watch.window import Window
+from sher3_public import one_call
 from typer.testing import CliRunner
 
 ARM = (
@@ -92,6 +95,14 @@ def test_a_window_is_judged(friction, level):
     assert found[0].name == "gap" and found[0].level == level
     causes = [s.message for s in found[1:]]
     assert bool(causes) == bool(friction) and all("Coulomb friction on turn" in c for c in causes)
+
+
+def test_the_model_of_another_robot_is_a_status_of_its_own(monkeypatch):
+    note = f"{OTHER_ROBOT}: mass, centre or inertia of arm differ"
+    other = SimpleNamespace(status="attributed", headline="so", causes=[], places=[], notes=["short", note])
+    monkeypatch.setattr(one_call, "diagnose", lambda *_, **__: other)
+    found = judged(ARM, ("turn",), (np.zeros(2), None, np.zeros((2, 1)), None))
+    assert [(s.name, s.level, s.message) for s in found] == [("gap", WARN, "so"), ("gap/model", WARN, note)]
 
 
 def test_what_cannot_be_judged_says_why():

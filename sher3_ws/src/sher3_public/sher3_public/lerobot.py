@@ -15,6 +15,8 @@ from sher3_public.answer import Answer
 from sher3_public.arrays.stating import Stated
 from sher3_public.cases import case_of_arrays, case_of_tables
 from sher3_public.errors import InputError
+from sher3_public.missed import EFFECT as MISSED
+from sher3_public.missed import with_missed
 from sher3_public.models import source_of
 from sher3_public.records import Array, Arrays
 
@@ -51,7 +53,7 @@ def from_lerobot(
         without: ids of effects that are left out of the library.
 
     Returns:
-        The answer; its notes name the periods that the clock missed.
+        The answer; periods that the loop missed are its last cause, `dropped_commands`: their share, and the longest.
 
     Raises:
         InputError: arguments do not fit the data set.
@@ -73,7 +75,13 @@ def from_lerobot(
         notes.append(f"{len(runs)} of the data set's {found.total} episodes are in its folder")
     if found.nominal:
         notes.append(f"stamps are the frame's number over {found.rate:g} Hz: they hide what the control loop missed")
-    return Answer.of(replace(case, guesses=[*guesses, *case.guesses], notes=notes), tuple(without))
+    answer = Answer.of(
+        replace(case, guesses=[*guesses, *case.guesses], notes=notes), [x for x in without if x != MISSED]
+    )
+    if MISSED in without:
+        return answer
+    verdict = with_missed(answer.verdict, [tables[CLOCK] for tables in runs])
+    return replace(answer, diagnosis=replace(answer.diagnosis, verdict=verdict))
 
 
 def _guessed(found: DataSet, guesses: list[str]) -> str:

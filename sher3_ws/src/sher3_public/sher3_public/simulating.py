@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from sher3_diagnosis.channel import Array
 from sher3_diagnosis.verdict import Verdict
+from sher3_diagnosis.words import quantity
 from sher3_export.check.check import bench_on
 from sher3_export.check.engine import copied, windows
 from sher3_export.check.model_of import model_of, model_of_text
@@ -31,22 +32,24 @@ class Replay:
 
     Attributes:
         time: (w, n), s from the start of its run.
-        recorded, untuned, corrected: (w, n), rad or m.
+        recorded, untuned, corrected: (w, n), in `unit`.
+        unit: rad or m.
     """
 
     time: Array
     recorded: Array
     untuned: Array
     corrected: Array
+    unit: str
 
     @property
     def before(self) -> float:
-        """Rms of recorded less untuned, rad or m."""
+        """Rms of recorded less untuned, in `unit`."""
         return float(np.sqrt(np.mean((self.recorded - self.untuned) ** 2)))
 
     @property
     def after(self) -> float:
-        """Rms of recorded less corrected, rad or m."""
+        """Rms of recorded less corrected, in `unit`."""
         return float(np.sqrt(np.mean((self.recorded - self.corrected) ** 2)))
 
 
@@ -58,7 +61,10 @@ class Replays:
     untold: Sequence[str]
 
     def __str__(self) -> str:
-        rows = [f"{name}: {r.before:.4g} untuned, {r.after:.4g} corrected" for name, r in self.joints.items()]
+        rows = [
+            f"{name}: {quantity(r.before, r.unit)} rms untuned, {quantity(r.after, r.unit)} corrected"
+            for name, r in self.joints.items()
+        ]
         return "\n".join([*rows, *(f"not expressed: {x}" for x in self.untold)])
 
     def plot(self) -> Figure:
@@ -72,7 +78,7 @@ class Replays:
                 lines = axes.plot(replay.time.T, getattr(replay, what).T, color=colour, lw=0.8)
                 lines[0].set_label(what)
             axes.set_title(name, fontsize="small", loc="left")
-            axes.set_ylabel("rad or m")
+            axes.set_ylabel(replay.unit)
         pictures[0].legend(fontsize="small")
         pictures[-1].set_xlabel("time, s")
         return figure
@@ -106,13 +112,15 @@ def _root(case: Case) -> Any:
 def _of(joint: str, record: Recorded, untuned: Mapping[str, Array], corrected: Mapping[str, Array]) -> Replay:
     starts, length = windows(record)
     rows = starts[:, None] + np.arange(length)
-    measured = record.tracks[joint].measured[rows]
+    track = record.tracks[joint]
+    measured = track.measured[rows]
     time: Array = record.period * rows.astype(float)
-    return Replay(time, measured, measured - untuned[joint], measured - corrected[joint])
+    return Replay(time, measured, measured - untuned[joint], measured - corrected[joint], track.unit)
 
 
 def _joined(runs: Sequence[Replay]) -> Replay:
     """Return the windows of all runs, those of a longer period cut to the shortest."""
-    n = min(r.time.shape[1] for r in runs)
+    n, first = min(r.time.shape[1] for r in runs), runs[0]
     parts = ("time", "recorded", "untuned", "corrected")
-    return Replay(*(np.concatenate([getattr(r, part)[:, :n] for r in runs]) for part in parts))
+    whole = {part: np.concatenate([getattr(r, part)[:, :n] for r in runs]) for part in parts}
+    return Replay(**whole, unit=first.unit)

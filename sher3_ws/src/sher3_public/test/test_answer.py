@@ -75,6 +75,7 @@ def test_paired_replays_show_what_the_causes_are_worth(answer, log):
     """Windows start at recorded states, so that the untuned model shows its missing friction and nothing else."""
     found = answer.simulate()
     turn, shoulder = found.joints["turn"], found.joints["shoulder"]
+    assert f"shoulder: {1e3 * shoulder.before:.3g} mrad rms untuned" in str(found)
     assert shoulder.recorded.shape == shoulder.untuned.shape == shoulder.corrected.shape == shoulder.time.shape
     assert shoulder.after < 0.2 * shoulder.before and turn.after < 1.2 * turn.before
     at = np.searchsorted(log.time, shoulder.time[3, 5] - 1e-9)

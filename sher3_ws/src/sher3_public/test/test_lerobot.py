@@ -25,7 +25,7 @@ def episode(seed, late=4, missing=()):
     ]
     action = np.column_stack(waves)
     state = action.copy()
-    state[late:, 1] = action[:-late, 1]
+    state[late:, 1] = action[: len(action) - late, 1]
     state[:late, 1] = action[0, 1]
     count = 360.0 / 4096.0
     kept = np.setdiff1d(np.arange(SAMPLES), missing)
@@ -58,8 +58,24 @@ def test_periods_that_a_clock_missed_are_named_with_their_size(tmp_path):
     folder = write_data_set(
         tmp_path / "set", "v3.0", RATE, ["pan", "lift"], [episode(0, missing=(100, 400, 600, 601, 602))]
     )
-    notes = " ".join(gap.from_lerobot(folder, unit="deg").notes)
+    answer = gap.from_lerobot(folder, unit="deg")
+    notes = " ".join(answer.notes)
     assert "missed 5 periods of 20 ms at 3 places, 3 (60 ms) at most" in notes and "frame's number" not in notes
+    assert {c.actuator for c in answer.causes} == {"lift", "all"}
+    share, longest = (answer.causes[-1].parameters[n].value for n in ("probability", "longest"))
+    assert (answer.causes[-1].effect, share, longest) == ("dropped_commands", 5 / 899, pytest.approx(0.06))
+    assert answer.places[-1].gap == pytest.approx(0.02 * np.sqrt((1 + 1 + 9) / 894), rel=1e-3)
+    assert "dropped commands" in answer.headline and "ropped commands" in answer.report()
+    assert str(answer.corrected()) and answer.to_rows()[-1]["place"] == "all"
+
+
+def test_missed_periods_are_the_cause_of_servos_that_do_as_they_are_told(tmp_path):
+    given = [episode(0, late=0, missing=(100,)), episode(1, late=0, missing=(7, 8))]
+    folder = write_data_set(tmp_path / "set", "v3.0", RATE, ["pan", "lift"], given)
+    assert gap.from_lerobot(folder, unit="deg", without=["dropped_commands"]).status == "no_gap"
+    answer = gap.from_lerobot(folder, unit="deg")
+    assert (answer.status, [c.effect for c in answer.causes]) == ("attributed", ["dropped_commands"])
+    assert "all axes: 1.06 ms rms over a floor of" in answer.where()[0]  # 20 ms times the root of (1 + 4) / 1795
 
 
 def broken(tmp_path, **info):

@@ -162,11 +162,44 @@ def test_a_urdf_with_the_gains_of_its_servos(urdf_log):
         gap.diagnose(URDF.format(mimic=""), time, reference, position)
 
 
-def test_a_joint_that_mimics_another_and_was_not_recorded(urdf_log):
+FINGER = """<body name="finger" pos="0.3 0 0"><joint name="finger" axis="0 1 0"/>
+<geom type="capsule" fromto="0 0 0 0.1 0 0" size="0.01" mass="0.3"/></body></body></body></worldbody><equality>
+<joint joint1="finger" joint2="elbow" polycoef="0.2 -1 0 0 0" solref="0.004 1"/></equality>"""
+
+
+@pytest.mark.parametrize("columns", [2, 3], ids=["recorded without its follower", "and with it"])
+def test_a_joint_that_an_equality_lets_another_follow(columns):
+    """The finger weighs on the elbow, and its friction of 1.2 N m is found beside that."""
+    xml = ARM.format(body="", range="").replace("</body></body></worldbody>", FINGER)
+    robot = mujoco.MjSpec.from_string(xml)
+    robot.joint("elbow").frictionloss = 1.2
+    time, control, position, _ = log_of(robot.to_xml())
+    found = gap.diagnose(xml, time, control, position[:, :columns])
+    assert [(c.effect, c.actuator) for c in found.causes] == [("coulomb_friction", "elbow")]
+    assert any("finger follows elbow: -1 times its place +0.2" in guess for guess in found.guessed)
+
+
+def test_the_model_of_another_robot_is_said():
+    """Longer and lighter: what wears changes no link."""
+    xml = ARM.format(body="", range="")
+    other = (
+        xml.replace("0 0 0 0.4 0 0", "0 0 0 0.6 0 0")
+        .replace('pos="0.4 0 0"', 'pos="0.6 0 0"')
+        .replace('mass="1"', 'mass="0.3"')
+    )
+    found = gap.diagnose(xml, *log_of(other))
+    (note,) = [x for x in found.notes if x.startswith("the model may be that of another robot")]
+    assert "which no wear changes; give the model of this robot" in note
+    assert {c.effect for c in found.causes} & {"link_inertia", "link_mass"}
+
+
+def test_a_joint_that_mimics_another_is_not_judged_by_itself(urdf_log):
     time, _, position, effort = urdf_log
     model = URDF.format(mimic='<mimic joint="shoulder"/>')
-    found = gap.diagnose(model, time, None, position[:, :1], effort[:, :1], joints=["shoulder"])
-    assert any("elbow (mimics shoulder: record it, too)" in guess for guess in found.guessed)
+    for columns, names in ((1, ["shoulder"]), (2, [])):
+        found = gap.diagnose(model, time, None, position[:, :columns], effort[:, :columns], joints=names)
+        assert any("elbow follows shoulder: 1 times its place, and" in guess for guess in found.guessed)
+        assert {c.actuator for c in found.causes} <= {"shoulder", "upper", "lower"}
 
 
 def test_runs_with_other_columns(urdf_log):

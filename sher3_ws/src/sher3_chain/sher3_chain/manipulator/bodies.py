@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -40,6 +41,27 @@ class Bodies:
     def reach(self) -> dict[str, float]:
         """Joint -> largest angle that the model allows, rad, of those that turn; infinite where it states none."""
         return {link.name: link.reach for link in self.tree.links if not link.slides}
+
+    def follow(self, names: Sequence[str], guesses: list[str]) -> set[str]:
+        """Return those of recorded joints that follow another of them by a gear, and say so of all that do.
+
+        They are moved by the joint that they follow, which feels their force; what was recorded of them is not used.
+        """
+        led = {n for n in names if n in self.tree.followers(set(names) - {n})}
+        found = self.tree.followers([n for n in names if n not in led])
+        guesses += [
+            f"{name} follows {gear.leader}: {gear.ratio:.4g} times its place"
+            + (f" {gear.offset:+.4g}" if gear.offset else "")
+            + ", and its force is felt there; take that out of the model where it has a motor of its own"
+            for name, gear in found.items()
+        ]
+        return led
+
+    def at_rest(self, names: Collection[str], guesses: list[str]) -> None:
+        """Say which joints neither were recorded nor follow one that was."""
+        left = [name for name in self.joints if name not in {*names, *self.tree.followers(names)}]
+        if left:
+            guesses.append(f"joints that were not recorded stay at zero: {', '.join(left)}")
 
     @cached_property
     def drives(self) -> dict[str, Driven]:

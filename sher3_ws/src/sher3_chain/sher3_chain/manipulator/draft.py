@@ -73,7 +73,9 @@ def of_arm(
     guesses += [
         f"{axis} is joint {joint}, because of its {why}" for axis, (joint, why) in found.items() if axis != joint
     ]
-    joints = [_joint(axes[axis], joint, slides[joint], guesses) for axis, (joint, _) in found.items()]
+    recorded = [joint for joint, _ in found.values()]
+    led = model.follow(recorded, guesses)
+    joints = [_joint(axes[a], joint, slides[joint], guesses) for a, (joint, _) in found.items() if joint not in led]
     for joint in joints:
         if joint["name"] in drives:
             effort = joint["signals"].get("effort", {})
@@ -87,9 +89,7 @@ def of_arm(
     ]
     if told := [name for name in told if name not in drives]:
         guesses.append(f"a reference and no force was recorded: {GAINS} of {', '.join(told)}")
-    left = [joint for joint in slides if joint not in {j for j, _ in found.values()}]
-    if left:
-        guesses.append(f"joints that were not recorded stay at zero: {', '.join(left)}")
+    model.at_rest(recorded, guesses)
     out = {"kind": "manipulator", "name": data["name"], "model": str(Path(model.label).resolve()), "time": data["time"]}
     return {**out, "joints": joints}
 

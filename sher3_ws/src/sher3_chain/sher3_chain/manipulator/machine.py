@@ -36,7 +36,7 @@ from sher3_chain.manipulator.causes.lateness import (
     with_closure,
     with_late_readings,
 )
-from sher3_chain.manipulator.causes.links import of_a_sum
+from sher3_chain.manipulator.causes.links import of_a_sum, other_robot_notes
 from sher3_chain.manipulator.causes.payload import about_its_own
 from sher3_chain.manipulator.causes.plan import JOINT
 from sher3_chain.manipulator.causes.search import causes_of_arm
@@ -178,6 +178,7 @@ class Manipulator(Chain[ArmMotionEvidence]):
                 "and are not looked for; `sher3 gap export` writes them into a model; those that the motion tells by "
                 "themselves have an interval"
             )
+        notes += other_robot_notes(finding.causes)
         notes += [*stop_notes(evidence), *timing_notes(finding.causes)]
         notes += change_notes(evidence, finding.attribution, self.parted(evidence))
         levels = [x for run in evidence.runs for x in level_notes(run, self.described.joints, evidence.judged)]

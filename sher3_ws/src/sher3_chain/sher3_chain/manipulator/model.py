@@ -16,6 +16,7 @@ from sher3_machines.errors import MachineError
 from sher3_chain.manipulator.bodies import Bodies
 from sher3_chain.manipulator.mjcf.losses import Losses
 from sher3_chain.manipulator.rigid import dynamics
+from sher3_chain.manipulator.rigid.gears import Geared, geared
 from sher3_chain.manipulator.rigid.tree import PARAMETERS, Tree
 
 __all__ = ["PARAMETERS", "ROUNDED", "ArmModel", "arm_model"]
@@ -26,10 +27,10 @@ ROUNDED = 1e-9
 
 @dataclass(frozen=True)
 class ArmModel:
-    """A model reduced to the joints that were recorded; all others are locked at zero.
+    """A model reduced to the joints that were recorded and those that follow them; all others are locked at zero.
 
     Attributes:
-        tree: of the recorded joints.
+        tree: of the joints that move.
         names: of the k recorded joints, in the order of the description.
         parameters: inertial ones of all links in place of the model's, (10 links,); None: those of the model.
         losses: what an MJCF model says beside its bodies; None: nothing.
@@ -39,6 +40,11 @@ class ArmModel:
     names: tuple[str, ...]
     parameters: Array | None = None
     losses: Losses | None = None
+
+    @cached_property
+    def geared(self) -> Geared:
+        """The recorded joints with those that follow them."""
+        return geared(self.tree, self.names)
 
     @cached_property
     def rows(self) -> list[int]:
@@ -68,7 +74,7 @@ class ArmModel:
             v: their velocities.
             a: their accelerations.
         """
-        return dynamics.regressor(self.tree, *map(self._full, (q, v, a)))[:, self.rows]
+        return self._felt(dynamics.regressor(self.tree, *self._full(q, v, a)))
 
     @cached_property
     def inertial(self) -> Array:
@@ -111,17 +117,25 @@ class ArmModel:
 
     def _rigid(self, q: Array, v: Array, a: Array) -> Array:
         own = self.inertial if self.parameters is None else self.parameters
-        bodies = dynamics.forces(self.tree, own, *map(self._full, (q, v, a)))
-        return bodies[:, self.rows] + self.rotors * a
+        return self._felt(dynamics.forces(self.tree, own, *self._full(q, v, a))) + self.rotors * a
 
     @cached_property
     def rotors(self) -> Array:
         """Inertia of the drive at each recorded joint, (k,), kg or kg m^2."""
-        return np.array([self.tree.links[row].rotor for row in self.rows])
+        return np.array([self.tree.links[row].rotor for row in self._order]) @ self.geared.ratios**2
 
-    def _full(self, x: Array) -> Array:
-        """Recorded joints (n, k) in the order of the tree."""
-        return np.asarray(x)[:, np.argsort(self.rows)]
+    @cached_property
+    def _order(self) -> list[int]:
+        return [self.tree.names.index(name) for name in self.geared.names]
+
+    def _full(self, q: Array, v: Array, a: Array) -> list[Array]:
+        """Motion (n, k) of the recorded joints as that of all joints of the tree, in its order."""
+        every = (self.geared.places(q), self.geared.moving(v), self.geared.moving(a))
+        return [x[:, np.argsort(self._order)] for x in every]
+
+    def _felt(self, forces: Array) -> Array:
+        """Forces on the joints of the tree as the recorded joints feel them."""
+        return self.geared.felt(forces[:, self._order])
 
 
 def arm_model(
@@ -147,9 +161,10 @@ def arm_model(
             have = ", ".join(tree.names)
             remedy = "name the joints as the model does"
             raise MachineError(f"{path}: no joint {n!r}", limit=f"joints: {have}", remedy=remedy)
-    reduced = tree.only(names)
+    reduced = tree.only([*names, *tree.followers(names)])
     if gravity is not None:
         reduced = replace(reduced, gravity=np.array(gravity))
     if not any(reduced.inertial[::PARAMETERS] > 0.0):
         raise MachineError(f"{path}: states no masses", value="0 kg", remedy="give a model with inertias")
-    return ArmModel(reduced, tuple(names), losses=None if source is None else Losses(source, names, stated))
+    losses = None if source is None else Losses(source, geared(reduced, names), stated)
+    return ArmModel(reduced, tuple(names), losses=losses)

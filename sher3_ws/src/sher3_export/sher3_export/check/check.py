@@ -33,13 +33,15 @@ class JointGap:
 
     Attributes:
         joint: its name.
-        before, after: rms of measured less simulated position with the nominal and the exported model, m or rad.
+        before, after: rms of measured less simulated position with the nominal and the exported model.
+        unit: of both, m or rad.
         closure: of the mean square.
     """
 
     joint: str
     before: float
     after: float
+    unit: str
     closure: Interval
 
 
@@ -89,7 +91,9 @@ def check(
     exported = export(verdict, "mjcf", copied(bench.original), joints, motors)
     engines = (bench.nominal, bench.compiled(export(verdict, "mjcf", copied(bench.root), joints, motors).text))
     errors = [[engine.run(record) for record in bench.records] for engine in engines]
-    return Checked(exported, [gap_of(name, *([x[name] for x in found] for found in errors)) for name in bench.joints])
+    units = {name: track.unit for name, track in bench.records[0].tracks.items()}
+    found = [gap_of(n, units[n], *([x[n] for x in error] for error in errors)) for n in bench.joints]
+    return Checked(exported, found)
 
 
 @dataclass(frozen=True)
@@ -139,11 +143,11 @@ def bench_on(
     return Bench(original, root, compiled(write_xml(root, ["nominal"]), names), records, names)
 
 
-def gap_of(joint: str, before: Sequence[Array], after: Sequence[Array]) -> JointGap:
+def gap_of(joint: str, unit: str, before: Sequence[Array], after: Sequence[Array]) -> JointGap:
     """Return the gap of one joint from the errors (windows, samples) of each run under both models."""
     squares = np.column_stack([np.concatenate([np.mean(run**2, axis=1) for run in x]) for x in (before, after)])
     rows = [
         [*part.mean(axis=0) / squares[:, 0].mean(), 0.0] for part in np.array_split(squares, min(BLOCKS, len(squares)))
     ]
     rms = np.sqrt(squares.mean(axis=0))
-    return JointGap(joint, float(rms[0]), float(rms[1]), interval_of(np.array(rows)))
+    return JointGap(joint, float(rms[0]), float(rms[1]), unit, interval_of(np.array(rows)))

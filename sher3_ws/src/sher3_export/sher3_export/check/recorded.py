@@ -32,6 +32,7 @@ class Track:
         measured: (n,) m or rad, of the load where it has an encoder: what a simulation is held against.
         behind: (n,) load less motor, m or rad; None with one encoder.
         drive: (n,) force, N or N m, or reference of a servo, m or rad; None where nothing drives the joint.
+        unit: of its place, m or rad.
         servo: whether the drive is the reference of a servo.
     """
 
@@ -40,6 +41,7 @@ class Track:
     measured: Array
     behind: Array | None
     drive: Array | None
+    unit: str
     servo: bool = False
 
 
@@ -106,7 +108,7 @@ def track_of(run: AxesRun, axis: Axis, q: Array, drive: Array | None, late: bool
     behind = None if load is None else load - q
     servo = axis.servo or (late and isinstance(axis, Joint) and axis.follows)
     drive = signals["reference"] if servo else drive
-    return Track(smooth[0], smooth[1], q if load is None else load, behind, drive, servo)
+    return Track(smooth[0], smooth[1], q if load is None else load, behind, drive, axis.unit_of_position, servo)
 
 
 def drive_of(signals: Mapping[str, Array], axis: Axis, late: bool) -> Array | None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -109,16 +110,19 @@ def _ranges(given: Any, check: Path | None, model: Path | None, names: dict[str,
 
 def gap_data(gap: JointGap) -> dict[str, Any]:
     """Return the gap of one joint as plain data."""
-    return {"joint": gap.joint, "before": gap.before, "after": gap.after, "closure": gap.closure.model_dump()}
+    return {**asdict(gap), "closure": gap.closure.model_dump()}
 
 
 def _told(data: dict[str, Any]) -> str:
+    from sher3_diagnosis.words import quantity
+
     lines = [data["file"]]
     lines += [f"  {text}" for text in (*data.get("written", []), *data.get("ranges", []))]
     lines += [f"  not expressed: {text}" for text in data.get("not_expressed", [])]
     for gap in data.get("gaps", []):
+        before, after = (quantity(gap[which], gap["unit"]) for which in ("before", "after"))
         closed = f"{gap['closure']['value']:.1%} closed"
-        lines.append(f"  MuJoCo, {gap['joint']}: {gap['before']:.4g} nominal, {gap['after']:.4g} exported, {closed}")
+        lines.append(f"  MuJoCo, {gap['joint']}: {before} rms nominal, {after} exported, {closed}")
     for name, share in data.get("coverage", {}).items():
         lines.append(f"  {name}: {share:.1%} of held-out motion within the 90 % ranges")
     return "\n".join(lines)

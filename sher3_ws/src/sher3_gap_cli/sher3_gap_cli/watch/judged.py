@@ -33,6 +33,7 @@ class Status(NamedTuple):
 
 def judged(model: str, joints: tuple[str, ...], arrays: tuple[Array | None, ...]) -> list[Status]:
     """Return the statuses of a window (time, command, position, effort); a window that cannot be judged says why."""
+    from sher3_chain.manipulator.causes.links import OTHER_ROBOT
     from sher3_diagnosis.report.summary import cause_text
     from sher3_public.models import source_of
     from sher3_public.one_call import diagnose
@@ -44,9 +45,10 @@ def judged(model: str, joints: tuple[str, ...], arrays: tuple[Array | None, ...]
     except Sher3Error as error:
         return [Status("gap", STALE, str(error))]
     level = OK if found.status == "no_gap" else WARN
+    another = [Status("gap/model", WARN, note) for note in found.notes if note.startswith(OTHER_ROBOT)]
     causes = [Status(f"gap/{c.actuator}", WARN, cause_text(c), sizes(c)) for c in found.causes]
     places = {f"{w.stage}/{w.actuator}": f"{w.gap:.4g} over {w.floor:.4g} {w.unit}" for w in found.places}
-    return [Status("gap", level, found.headline, {"status": found.status, **places}), *causes]
+    return [Status("gap", level, found.headline, {"status": found.status, **places}), *another, *causes]
 
 
 def sizes(cause: Cause) -> dict[str, str]:

@@ -56,6 +56,7 @@ def described(source: Source, runs: Sequence[Arrays], stated: Stated) -> Describ
     controls = _controls(names, control, drives, source, stated)
     if not stated.controls:
         controls = plausible.columns_of_control(names, controls, runs[0], drives, bool(stated.joints), guesses)
+    names, controls, runs = without_followers(source, names, controls, runs, guesses)
     joints = [_joint(name, i, source, runs, stated, controls[i] is not None) for i, name in enumerate(names)]
     for place, (name, column) in enumerate(zip(names, controls, strict=True)):
         drive = drives[name].drive if name in drives else None
@@ -76,14 +77,25 @@ def described(source: Source, runs: Sequence[Arrays], stated: Stated) -> Describ
     if runs[0].control is not None:
         unheard = [n for n, c in zip(names, controls, strict=True) if c is None and n in drives]
         guesses += [f"{n}: its control is not used, because {drives[n].reason}" for n in unheard if drives[n].reason]
-    left = [link for link in source.bodies.tree.links if link.name not in names]
-    if left:
-        each = [link.name + (f" (mimics {link.mimics}: record it, too)" if link.mimics else "") for link in left]
-        guesses.append(f"joints that were not recorded stay at zero: {', '.join(each)}")
+    source.bodies.at_rest(names, guesses)
     data = {"kind": "manipulator", "name": source.name, "model": source.bodies.label, "time": {"column": "time"}}
     return Described(
         {**data, "inertias": stated.inertias, "joints": joints}, [_table(run, names, controls) for run in runs], guesses
     )
+
+
+def without_followers(
+    source: Source, names: Sequence[str], controls: Sequence[int | None], runs: Sequence[Arrays], guesses: list[str]
+) -> tuple[list[str], list[int | None], list[Arrays]]:
+    """Return joints, their controls and runs without the joints that follow others of them."""
+    led = source.bodies.follow(names, guesses)
+    kept = [i for i, name in enumerate(names) if name not in led]
+
+    def cut(x: Array | None) -> Array | None:
+        return None if x is None else x[:, kept]
+
+    runs = [replace(x, position=x.position[:, kept], effort=cut(x.effort), load=cut(x.load)) for x in runs]
+    return [names[i] for i in kept], [controls[i] for i in kept], runs
 
 
 def without_free(source: Source, run: Arrays, stated: Sequence[str], guesses: list[str]) -> Arrays:
@@ -125,7 +137,8 @@ def joints_of(source: Source, columns: int, stated: Sequence[str], guesses: list
             raise InputError("joints do not fit the positions", value=value, limit=limit, remedy="name one for each")
         return list(stated)
     driven = [name for name in known if name in drives and drives[name].drive is not None]
-    for which, found in (("joints", known), ("driven joints", driven)):
+    alone = [link.name for link in source.bodies.tree.links if link.gear is None]
+    for which, found in (("joints", known), ("driven joints", driven), ("joints that follow no other", alone)):
         if len(found) == columns:
             guesses.append(f"positions are those of the model's {which} in its order: {', '.join(found)}")
             return found

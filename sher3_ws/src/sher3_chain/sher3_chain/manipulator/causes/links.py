@@ -24,6 +24,7 @@ from sher3_diagnosis.fit.whitened import Whitened
 from sher3_diagnosis.quantify.jackknife import standard_error
 from sher3_diagnosis.thresholds import JACKKNIFE, NEEDED, PRICE
 from sher3_diagnosis.verdict import Cause
+from sher3_effects import pages
 
 from sher3_chain.manipulator.evidence import ArmMotionEvidence, channel_of
 from sher3_chain.manipulator.model import PARAMETERS, ArmModel
@@ -39,7 +40,19 @@ ROUNDS = 3
 """Rounds in which what is left of each joint is its weight, first by plain laws alone, then beside links."""
 OF_A_SUM = "in a sum over links"
 """What stands for a number of a link that no body has: the motion tells base parameters, sums over several links."""
+OTHER_ROBOT = "the model may be that of another robot"
+"""How the note begins that links are not as modelled."""
 Law = tuple[Effect, str, Shape]
+
+
+def other_robot_notes(causes: Sequence[Cause]) -> list[str]:
+    """Return a sentence on links that differ from their model at any time: what wears is a joint, never a body."""
+    of_links = {e.id for e in pages("joint") if any(x.startswith("link") for x in e.on_axis.values())}
+    wrong = {c.actuator for c in causes if c.effect in of_links and c.condition is None}
+    if not wrong:
+        return []
+    said = f"mass, centre or inertia of {', '.join(sorted(wrong))} differ, which no wear changes"
+    return [f"{OTHER_ROBOT}: {said}; give the model of this robot, with what is mounted on it"]
 
 
 def wrong_links(

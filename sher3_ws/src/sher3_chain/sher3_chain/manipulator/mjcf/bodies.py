@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -9,6 +10,7 @@ from scipy.spatial.transform import Rotation
 from sher3_diagnosis.channel import Array
 from sher3_machines.errors import MachineError
 
+from sher3_chain.manipulator.mjcf.gears import gears_of
 from sher3_chain.manipulator.rigid.tree import WORLD, Link, Tree, moved, parameters
 
 FREE, SLIDE, HINGE = 0, 2, 3
@@ -32,7 +34,7 @@ def tree_from_mjcf(source: Any, label: str) -> Tree:
         MachineError: a joint is a ball, or sits on a body that floats.
     """
     links: list[Link] = []
-    other: dict[str, str] = {}
+    other, gears = {}, gears_of(source)
     floats: dict[int, str] = {}  # body below the world, by number -> how it moves
     carriers: list[tuple[int, Array, Array]] = [(WORLD, np.eye(3), np.zeros(3))]
     for body in range(1, source.nbody):
@@ -56,7 +58,8 @@ def tree_from_mjcf(source: Any, label: str) -> Tree:
             low, high = free_range(source, joint)
             at = place + turn @ (anchor - zero * axis if slides else anchor)  # drawn where the joint reads `ref`
             turn = turn if slides else turn @ Rotation.from_rotvec(-zero * axis).as_matrix()
-            links.append(Link(name, "", parent, turn, at, axis, slides, rotor=rotor, low=low, high=high))
+            link = Link(name, "", parent, turn, at, axis, slides, rotor=rotor, low=low, high=high)
+            links.append(replace(link, gear=gears.get(joint)))
             parent, turn, place = len(links) - 1, np.eye(3), -anchor
         carriers.append((parent, turn, place))
         if parent != WORLD:

@@ -16,6 +16,7 @@ from sher3_diagnosis.channel import Array
 from sher3_machines.intake.columns import acting
 
 from sher3_chain.manipulator.mjcf.bodies import SLIDE
+from sher3_chain.manipulator.mjcf.gears import coupled
 from sher3_chain.manipulator.mjcf.passive import AFFINE, FIXED, NONE, at_joint, is_passive
 
 EULER, RUNGE_KUTTA, IMPLICIT, IMPLICIT_FAST = range(4)
@@ -27,8 +28,6 @@ CLAMP_OFF = 1 << 7
 
 NO_DELAY: Mapping[int, float] = defaultdict(float)
 """Delay of each actuator, s, in versions of MuJoCo before 3.4 that have none."""
-OF_JOINTS = 2
-"""MuJoCo's number of an equality of joints (mjtEq)."""
 TENDON, WRAPPED_JOINT = 3, 1
 """MuJoCo's numbers of a transmission by a tendon (mjtTrn), and of a joint in a tendon (mjtWrap)."""
 
@@ -203,12 +202,6 @@ def _drive(source: Any, joint: int) -> tuple[Drive | None, str]:
         )
     gains = -gain / (place * gear), -place * gear**2, -speed * gear**2
     return Drive(name, control, gear, True, *gains, limit, delay, within), ""
-
-
-def coupled(source: Any, joint: int) -> bool:
-    """Return whether an equality that is active couples a joint with another."""
-    own = (source.eq_obj1id == joint) | (source.eq_obj2id == joint)
-    return bool(np.any(own & (source.eq_type == OF_JOINTS) & (source.eq_active0 != 0)))
 
 
 def by_tendon(source: Any, joint: int) -> str:

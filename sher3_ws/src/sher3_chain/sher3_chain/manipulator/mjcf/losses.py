@@ -4,7 +4,7 @@ and actuators that no control reaches.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection
 from copy import copy
 from typing import Any
 
@@ -13,6 +13,7 @@ from sher3_diagnosis.channel import Array
 
 from sher3_chain.manipulator.mjcf.passive import MOTOR, Passive
 from sher3_chain.manipulator.mjcf.reading import mujoco
+from sher3_chain.manipulator.rigid.gears import Geared
 
 
 class Losses:
@@ -22,14 +23,13 @@ class Losses:
     dynamics say how large it is. Contacts, limits and equalities are left out: joints are judged in free motion.
 
     Attributes:
-        names: of the k joints.
-        full: their dry friction in motion, (k,), N or N m.
+        full: dry friction of the k recorded joints in motion, (k,), N or N m.
     """
 
-    def __init__(self, source: Any, names: Sequence[str], stated: Collection[str] = ()) -> None:
+    def __init__(self, source: Any, moving: Geared, stated: Collection[str] = ()) -> None:
         """Take a copy of an `MjModel`; the damping of `stated` joints is known from elsewhere and left out."""
         api = mujoco()
-        self.names = tuple(names)
+        self._moving = moving
         self._model = copy(source)
         flags = api.mjtDisableBit
         for flag in (flags.mjDSBL_CONTACT, flags.mjDSBL_LIMIT, flags.mjDSBL_EQUALITY):
@@ -38,12 +38,12 @@ class Losses:
         if self._model.opt.integrator != api.mjtIntegrator.mjINT_RK4:
             self._model.opt.enableflags |= int(api.mjtEnableBit.mjENBL_INVDISCRETE)
             self._lag = 0.5 * float(self._model.opt.timestep)
-        joints = [self._model.joint(name) for name in names]
+        joints = [self._model.joint(name) for name in moving.names]
         self._places = np.array([int(j.qposadr[0]) for j in joints])
         self._rows = np.array([int(j.dofadr[0]) for j in joints])
         bias = api.mjtBias.__members__.get(MOTOR)
         self._passive = Passive(self._model, [j.id for j in joints], None if bias is None else int(bias))
-        self.full = np.array([float(self._model.dof_frictionloss[row]) for row in self._rows])
+        self.full = self._model.dof_frictionloss[self._rows] @ np.abs(moving.ratios)
         for joint in joints:
             if joint.name in stated:
                 self._model.dof_damping[joint.dofadr[0]] = 0.0
@@ -51,7 +51,7 @@ class Losses:
     def at_rest(self, q: Array) -> Array:
         """Return the force that springs, gravity compensation and cogging leave to the drives at q (n, k), (n, k)."""
         still = np.zeros_like(q)
-        return -self._forces(q, still, still)[0] - self._passive.force(q, still)
+        return -self._forces(q, still, still)[0]
 
     def compensated(self, q: Array) -> Array:
         """Return the force that gravity compensation takes off the drives at q (n, k), (n, k)."""
@@ -64,7 +64,7 @@ class Losses:
 
     def in_motion(self, q: Array, v: Array) -> Array:
         """Return the force that damping and drag need at positions and velocities (n, k), (n, k)."""
-        return -self._forces(q, v, np.zeros_like(q))[0] - self._passive.force(q, v) - self.at_rest(q)
+        return -self._forces(q, v, np.zeros_like(q))[0] - self.at_rest(q)
 
     def dry(self, q: Array, v: Array, a: Array) -> Array:
         """Return the force that dry friction needs at positions, velocities and accelerations (n, k), (n, k)."""
@@ -73,13 +73,14 @@ class Losses:
         return -self._forces(q, v - self._lag * a, a)[1]
 
     def _forces(self, q: Array, v: Array, a: Array) -> tuple[Array, Array]:
-        """Return passive forces and those of dry friction on the joints, (n, k) each."""
+        """Return passive forces and those of dry friction as the recorded joints feel them, (n, k) each."""
         api = mujoco()
         data = api.MjData(self._model)
+        q, v, a = self._moving.places(q), self._moving.moving(v), self._moving.moving(a)
         passive, dry = np.empty_like(q), np.empty_like(q)
         place, speed, growth, lost, rubbed = data.qpos, data.qvel, data.qacc, data.qfrc_passive, data.qfrc_constraint
         for i, (qi, vi, ai) in enumerate(zip(q, v, a, strict=True)):
             place[self._places], speed[self._rows], growth[self._rows] = qi, vi, ai
             api.mj_inverse(self._model, data)
             passive[i], dry[i] = lost[self._rows], rubbed[self._rows]
-        return passive, dry
+        return self._moving.felt(passive + self._passive.force(q, v)), self._moving.felt(dry)

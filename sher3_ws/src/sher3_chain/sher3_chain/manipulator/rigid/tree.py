@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, replace
+from typing import NamedTuple
 
 import numpy as np
 from sher3_diagnosis.channel import Array
@@ -16,6 +17,14 @@ MATRIX = ((0, 1, 3), (1, 2, 4), (3, 4, 5))
 """Which of the last six stands in each place of the inertia's matrix."""
 SIX = ((0, 0, 1, 0, 1, 2), (0, 1, 1, 2, 2, 2))
 """Rows and columns of the matrix in which the six stand."""
+
+
+class Gear(NamedTuple):
+    """By what a joint follows another: its position is `ratio` times that of the `leader`, plus `offset`, rad or m."""
+
+    leader: str
+    ratio: float = 1.0
+    offset: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -34,7 +43,7 @@ class Link:
         at: origin of that body in the joint's frame, (3,), m; both have the same axes.
         rotor: inertia of the drive at the joint, kg m^2 or kg.
         low, high: positions at which its stops begin to act, rad or m; infinite without a stop.
-        mimics: joint that it follows by a gear; empty: none.
+        gear: by which it follows another joint; None: it follows none.
     """
 
     name: str
@@ -50,7 +59,7 @@ class Link:
     rotor: float = 0.0
     low: float = -np.inf
     high: float = np.inf
-    mimics: str = ""
+    gear: Gear | None = None
 
     @property
     def reach(self) -> float:
@@ -94,6 +103,18 @@ class Tree:
     def inertial(self) -> Array:
         """Inertial parameters of all links, (10 links,)."""
         return np.concatenate([link.inertia for link in self.links])
+
+    def followers(self, names: Collection[str]) -> dict[str, Gear]:
+        """Return the other joints that follow one of these, directly or through others, each with its whole gear."""
+        others = {link.name: link.gear for link in self.links if link.gear is not None and link.name not in names}
+        found = {}
+        for name, gear in others.items():
+            for _ in others:  # at most as often as there are gears: they may form a circle
+                if further := others.get(gear.leader):
+                    gear = Gear(further.leader, gear.ratio * further.ratio, gear.ratio * further.offset + gear.offset)
+            if gear.leader in names:
+                found[name] = gear
+        return found
 
     def only(self, names: Collection[str]) -> Tree:
         """Return the tree in which all joints but these are held at zero."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from xml.etree.ElementTree import Element
 
 import numpy as np
@@ -11,7 +11,7 @@ from sher3_diagnosis.channel import Array
 from sher3_machines.errors import MachineError
 from sher3_machines.urdf import Urdf, urdf_of
 
-from sher3_chain.manipulator.rigid.tree import WORLD, Link, Tree, moved, parameters
+from sher3_chain.manipulator.rigid.tree import WORLD, Gear, Link, Tree, moved, parameters
 
 GRAVITY = (0.0, 0.0, -9.81)
 """Of a URDF, which states none: what simulators and Pinocchio take, m/s^2."""
@@ -101,11 +101,17 @@ class _Reader:
                 self._other[name] = kind
             return _Carrier(at.joint, turn, place)
         slides, (low, high) = kind in SLIDING, FREELY if kind == "continuous" else self._range(joint)
-        follows = joint.find("mimic")
-        mimics = "" if follows is None else follows.get("joint", "")
-        link = Link(name, "", at.joint, turn, place, self._urdf.axis(joint), slides, low=low, high=high, mimics=mimics)
-        self._links.append(link)
+        link = Link(name, "", at.joint, turn, place, self._urdf.axis(joint), slides, low=low, high=high)
+        self._links.append(replace(link, gear=self._gear(joint)))
         return _Carrier(len(self._links) - 1, np.eye(3), np.zeros(3))
+
+    def _gear(self, joint: Element) -> Gear | None:
+        """Return how a joint mimics another."""
+        mimic = joint.find("mimic")
+        if mimic is None:
+            return None
+        ratio, offset = (self._urdf.numbers(mimic, k, 1, d)[0] for k, d in (("multiplier", "1"), ("offset", "0")))
+        return Gear(self._urdf.word(mimic, "joint"), float(ratio), float(offset))
 
     def _range(self, joint: Element) -> tuple[float, float]:
         """Return the positions that a joint allows, infinite where it states no limits."""
