@@ -92,7 +92,8 @@ def _case(data: dict[str, Any], tables: Sequence[Tables], source: Source | None,
     except ValidationError as error:
         first = error.errors()[0]
         place = ".".join(map(str, first["loc"])) or "the description"
-        raise MachineError(f"{place}: {first['msg']}", remedy="correct what was stated") from error
+        value = str(first["input"])[:60]
+        raise MachineError(f"{place}: {first['msg']}", value=value, remedy="correct what was stated") from error
     runs = []
     records, few = kind.chosen(dict(zip(names, tables, strict=True)), description)
     notes = [few] if few else []

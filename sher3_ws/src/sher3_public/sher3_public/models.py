@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from sher3_chain.manipulator.bodies import Bodies, bodies_of, bodies_of_mujoco
-from sher3_chain.manipulator.mjcf.reading import MAX_BYTES
+from sher3_chain.manipulator.bodies import Bodies, bodies_of, bodies_of_mujoco, read_bodies
+from sher3_chain.manipulator.mjcf.reading import BINARY, MAX_BYTES
 from sher3_common import FileError, read_text
 
 from sher3_public.errors import InputError
@@ -21,7 +21,7 @@ class Source:
     Attributes:
         name: for reports.
         bodies: what the diagnosis reads.
-        text: XML that corrections are written into; None: only an `MjModel` was given.
+        text: XML that corrections are written into; None: an `MjModel` or its binary file was given.
         path: of its file, where there is one.
     """
 
@@ -53,6 +53,8 @@ def source_of(model: object) -> Source:
 
 
 def _of_file(path: Path) -> Source:
+    if path.suffix == BINARY:
+        return Source(path.stem, read_bodies(path))
     try:
         text = read_text(path, MAX_BYTES)
     except FileError as error:

@@ -78,6 +78,7 @@ def diagnose(
         MachineError: the model or the record cannot be used; the sentence says why and what to do.
         UnknownEffect: an id in `without` is no effect.
     """
+    joints, controls = ([x] if isinstance(x, str) else x for x in (joints, controls))
     stated = Stated(tuple(joints), gain, resolution, simulated, units or {}, tuple(controls), servo, delay, inertias)
     case = _case(model, time, (control, position, effort, load), stated, rate, tags)
     try:

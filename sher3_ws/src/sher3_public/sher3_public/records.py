@@ -61,9 +61,21 @@ def columns_of(table: Any) -> dict[str, Array]:
     names = list(table) if isinstance(table, Mapping) else list(table.columns)
     found = {str(name): _as_numbers(table[name]) for name in names}
     index = np.asarray(getattr(table, "index", [])) if not isinstance(table, Mapping) else np.array([])
-    if index.dtype.kind in STAMPS and not any(name.lower() in ("t", "time", "stamp", "timestamp") for name in found):
+    if index.dtype.kind in STAMPS and not any(name.lower() in CLOCKS for name in found):
         found["time"] = index
-    return {name: _numbers(name, x) for name, x in found.items() if x.dtype.kind in STAMPS + "iu"}
+    columns = {name: _numbers(name, x) for name, x in found.items() if x.dtype.kind in STAMPS + "iu"}
+    _check_lengths(columns)
+    return columns
+
+
+def _check_lengths(columns: Mapping[str, Array]) -> None:
+    """Raise InputError where a column has a few rows more or less than the only clock of the table."""
+    clocks = [name for name in columns if name.lower() in CLOCKS]
+    for name, x in columns.items() if len(clocks) == 1 else ():
+        rows = len(columns[clocks[0]])
+        if x.ndim and 0 < abs(len(x) - rows) < FEW * rows:
+            remedy = "give one row for each stamp"
+            raise InputError(f"{name} and {clocks[0]} differ in length", value=len(x), limit=rows, remedy=remedy)
 
 
 def _as_numbers(column: Any) -> NDArray[Any]:
@@ -75,6 +87,10 @@ def _as_numbers(column: Any) -> NDArray[Any]:
         return found
 
 
+CLOCKS = ("t", "time", "stamp", "timestamp")
+"""Names of a table's own stamps."""
+FEW = 0.1
+"""Share of a table's rows by which a column may differ that was meant to have as many; others are no columns of it."""
 STAMPS = "Mmf"
 """Kinds of array that stamps may be: moments, spans of time, numbers with a fraction; counts of rows are none."""
 
@@ -142,8 +158,8 @@ def _numbers(name: str, x: ArrayLike) -> Array:
         found = np.asarray(x)
         if found.dtype.kind in "Mm":
             return (found - found[0] if found.dtype.kind == "M" else found) / np.timedelta64(1, "s")
-        if found.dtype.kind == "b":
-            raise TypeError("true and false")
+        if found.dtype.kind in "bc":
+            raise TypeError(str(found.dtype))
         return np.asarray(x, dtype=float)
     except (TypeError, ValueError) as error:
         raise InputError(f"{name} is no array of numbers", value=str(error)[:80], remedy="give numbers") from error

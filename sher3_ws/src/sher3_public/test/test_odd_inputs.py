@@ -50,7 +50,7 @@ def test_positions_that_come_at_every_fifth_stamp(log):
 def test_one_joint_alone_of_a_model_in_mjcf(log):
     """The shoulder is taken to be at rest: the elbow is judged, and the answer says what was assumed."""
     time, control, position = log
-    still = gap.diagnose(MODEL, time, control[:, 1], position[:, 1], joints=["elbow"])
+    still = gap.diagnose(MODEL, time, control[:, 1], position[:, 1], joints="elbow")
     assert ("coulomb_friction", "elbow") in named(still)
     assert any("stay at zero: shoulder" in guess for guess in still.guessed)
 
@@ -94,6 +94,35 @@ def test_a_handful_of_samples_is_said(log):
         gap.diagnose(MODEL, *(x[:10] for x in log))
 
 
+def test_a_column_that_lost_its_last_rows_and_a_gain_that_is_none(log):
+    time, control, position = log
+    with pytest.raises(InputError, match="ctrl and time differ in length; value 5998; limit 6000"):
+        gap.diagnose(MODEL, {"time": time, "ctrl": control[:-2], "qpos": position})
+    with pytest.raises(MachineError, match=r"joints\.0\.gain.*value large"):
+        gap.diagnose(MODEL, time, None, position, position, gain="large")
+
+
+@pytest.mark.parametrize("lost", ["positions", "whole rows"])
+def test_rows_of_nan_part_a_record(log, lost):
+    time, control, position = (x.copy() for x in log)
+    for x in (position,) if lost == "positions" else (time, control, position):
+        x[2000:2300] = np.nan
+    answer = gap.diagnose(MODEL, time, control, position)
+    assert named(answer) == {("coulomb_friction", "elbow")}
+    assert any("cut into 2 parts, because its clock has holes; 300 samples" in note for note in answer.notes)
+
+
+def test_a_compiled_model(log, tmp_path):
+    mujoco.mj_saveModel(mujoco.MjModel.from_xml_string(MODEL), str(tmp_path / "robot.mjb"))
+    answer = gap.diagnose(tmp_path / "robot.mjb", *log)
+    assert named(answer) == {("coulomb_friction", "elbow")}
+    with pytest.raises(InputError, match="an MjModel"):
+        answer.corrected(to="mjcf")
+    (tmp_path / "no.mjb").write_bytes(b"0")
+    with pytest.raises(MachineError, match="give its XML, or a file that MuJoCo"):
+        gap.diagnose(tmp_path / "no.mjb", *log)
+
+
 def test_noise_that_hides_the_forces_is_no_unit(log):
     """In degrees all forces are smaller, those of the noise too: that speaks for no unit."""
     time, control, position = log
@@ -111,7 +140,8 @@ def test_a_control_that_is_no_place_and_one_that_is_no_force(log):
 
 def test_controls_without_numbers_and_one_that_never_changes(log):
     time, control, position = log
-    for given, words in ((np.full_like(control, np.nan), "has no number"), (control > 0.0, "no array of numbers")):
+    no_number = (control > 0.0, control.astype(complex))
+    for given, words in ((np.full_like(control, np.nan), "has no number"), *((x, "no array of n") for x in no_number)):
         with pytest.raises(InputError, match=words):
             gap.diagnose(MODEL, time, given, position)
     with pytest.raises(InputError, match="moves while no control changes"):
@@ -133,6 +163,8 @@ def test_stamps_as_numpy_has_times_and_in_nanoseconds(log):
     nano = (1e9 * time).round().astype("timedelta64[ns]")
     for stamps in (nano, np.datetime64("2026-01-01") + nano):
         assert named(gap.diagnose(MODEL, stamps, control, position)) == {("coulomb_friction", "elbow")}
+    with pytest.raises(MachineError, match="needs float64, not float32"):
+        gap.diagnose(MODEL, (1.7e9 + time).astype(np.float32), control, position)
     with pytest.raises(InputError, match="in ns by 1000000000"):
         gap.diagnose(MODEL, nano.astype(float), control, position)
     with pytest.raises(InputError, match="time has no stamps"):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from sher3_diagnosis.channel import Array
+from sher3_diagnosis.channel import Array, Mask
 from sher3_machines.errors import MachineError
 from sher3_machines.intake.columns import find
 from sher3_machines.intake.fields import Column
@@ -34,7 +34,7 @@ def parts_of_record(
         most = MOST_READINGS // (len(columns) * records)
         whole, note = beginning(name, tables, _stamps(tables, machine.time.column), most)
         return {name: whole}, note
-    parts, note = _cut_at_holes(name, tables, columns, machine.time.column)
+    parts, note = _cut_at_holes(name, tables, machine)
     most, rows = MOST_READINGS // (len(columns) * records), sum(map(_rows, parts.values()))
     out: dict[str, Tables] = {}
     notes = [note] if note else []
@@ -50,14 +50,23 @@ def columns_of(machine: ChainDescription) -> list[Column]:
     return [c for axis in machine.chain for c in vars(axis.signals).values() if isinstance(c, Column)]
 
 
-def _cut_at_holes(name: str, tables: Tables, columns: list[Column], clock: str | None) -> tuple[dict[str, Tables], str]:
-    if clock is None or len({table_of(c.column) for c in columns}) != 1:
+def _cut_at_holes(name: str, tables: Tables, machine: ChainDescription) -> tuple[dict[str, Tables], str]:
+    clock, homes = machine.time.column, {table_of(c.column) for c in columns_of(machine)}
+    if clock is None or len(homes) != 1:
         return {name: tables}, ""
-    table = table_of(columns[0].column)
+    table = homes.pop()
     try:
-        return cut(name, tables, find(f"{table}/{clock}" if table else clock, tables, name))
+        stamps = find(f"{table}/{clock}" if table else clock, tables, name)
+        return cut(name, tables, stamps, _placed(name, tables, machine, len(tables[stamps])))
     except MachineError:
         return {name: tables}, ""  # the reader names what is missing
+
+
+def _placed(name: str, tables: Tables, machine: ChainDescription, rows: int) -> Mask:
+    """Return the rows (n,) in which any joint has a place; of many rows without one a record has a hole there."""
+    found = [tables[find(axis.signals.position.column, tables, name)] for axis in machine.chain]
+    told = [np.isfinite(x).reshape(rows, -1).any(axis=1) for x in found if len(x) == rows]
+    return np.any(told, axis=0) if told else np.ones(rows, dtype=bool)
 
 
 def _rows(tables: Tables) -> int:

@@ -13,7 +13,7 @@ from sher3_machines.errors import MachineError
 
 from sher3_chain.manipulator.mjcf.bodies import tree_from_mjcf
 from sher3_chain.manipulator.mjcf.drives import Driven, driven
-from sher3_chain.manipulator.mjcf.reading import MAX_BYTES, compiled, is_mjcf
+from sher3_chain.manipulator.mjcf.reading import BINARY, MAX_BYTES, binary, compiled, is_mjcf
 from sher3_chain.manipulator.rigid.tree import Tree
 from sher3_chain.manipulator.rigid.urdf import tree_from_urdf
 
@@ -70,7 +70,9 @@ class Bodies:
 
 
 def read_bodies(path: Path) -> Bodies:
-    """Read a URDF or MJCF file; raises MachineError where it cannot be read."""
+    """Read a URDF, MJCF or binary file of MuJoCo (.mjb); raises MachineError where it cannot be read."""
+    if path.suffix == BINARY:
+        return bodies_of_mujoco(binary(path), str(path))
     try:
         return bodies_of(read_text(path, MAX_BYTES), str(path), path)
     except FileError as error:

@@ -12,6 +12,8 @@ from sher3_machines.errors import MachineError
 MAX_BYTES = 20_000_000
 """Largest model file that is read."""
 
+BINARY = ".mjb"
+"""Ending of a compiled model, as `mj_saveModel` writes it; each version of MuJoCo reads its own."""
 MISSING = "Error opening file"
 """What MuJoCo says of a file that is not there."""
 
@@ -28,6 +30,16 @@ def mujoco(wanted: object = "MJCF") -> ModuleType:
     except ImportError as error:
         remedy = "install the extra `mujoco` of this project"
         raise MachineError(f"{wanted}: MJCF needs MuJoCo", remedy=remedy) from error
+
+
+def binary(path: Path) -> Any:
+    """Return the `MjModel` of a binary file; raises MachineError where MuJoCo is missing or refuses it."""
+    api = mujoco(path)
+    try:
+        return api.MjModel.from_binary_path(str(path))
+    except ValueError as error:
+        remedy = f"give its XML, or a file that MuJoCo {api.__version__} wrote"
+        raise MachineError(f"{path}: cannot be read", value=str(error)[:120], remedy=remedy) from error
 
 
 def compiled(text: str, label: str, path: Path | None = None) -> Any:

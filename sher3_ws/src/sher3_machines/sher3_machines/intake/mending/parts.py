@@ -1,10 +1,9 @@
-"""A log with holes or a clock that jumps back is several records: it is cut there, and each part is a run."""
+"""A log with holes, in its clock or of rows without a place, or whose clock jumps back: each part of it is a run."""
 
 from __future__ import annotations
 
-from itertools import pairwise
-
 import numpy as np
+from sher3_diagnosis.channel import Mask
 
 from sher3_machines.intake.tables import Tables
 
@@ -20,26 +19,29 @@ MARK = ".part"
 """What parts the name of a run from the number of its part."""
 
 
-def cut(name: str, tables: Tables, clock: str | None) -> tuple[dict[str, Tables], str]:
+def cut(name: str, tables: Tables, clock: str | None, placed: Mask | None = None) -> tuple[dict[str, Tables], str]:
     """Return the parts of a record by name, and a note; the record itself where nothing is to be cut.
 
     Args:
         name: of the run.
         tables: its columns.
         clock: name of the time column, where one table has it; None: no stamps, or several tables.
+        placed: rows (n,) in which a place was recorded; None: all.
     """
     stamps = tables.get(clock) if clock is not None else None
-    if stamps is None or stamps.ndim != 1 or len(stamps) < SHORTEST or not np.isfinite(stamps).all():
+    if stamps is None or stamps.ndim != 1:
         return {name: tables}, ""
-    steps = np.diff(stamps)
+    seen = np.flatnonzero(np.isfinite(stamps) & (True if placed is None else placed))
+    steps = np.diff(stamps[seen])
     forward = steps[steps > 0.0]
-    if not len(forward):
+    if len(seen) < SHORTEST or not len(forward):
         return {name: tables}, ""
     breaks = np.abs(steps) > LONGEST_HOLE * np.median(forward)
     if not breaks.any():
         return {name: tables}, ""
-    edges = [0, *(int(i) + 1 for i in np.flatnonzero(breaks)), len(stamps)]
-    spans = [(a, b) for a, b in pairwise(edges) if b - a >= SHORTEST]
+    at = np.flatnonzero(breaks)
+    each = zip([seen[0], *seen[at + 1]], [*(seen[at] + 1), seen[-1] + 1], strict=True)
+    spans = [(int(a), int(b)) for a, b in each if b - a >= SHORTEST]
     spans = sorted(sorted(spans, key=lambda span: span[0] - span[1])[:MOST])
     left = len(stamps) - sum(b - a for a, b in spans)
     if left > (1.0 - HELD) * len(stamps):

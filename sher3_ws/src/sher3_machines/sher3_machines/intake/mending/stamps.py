@@ -37,7 +37,8 @@ def even_stamps(stamps: Array, run: str) -> tuple[Array, NDArray[np.int64], str]
             f"{run}: time does not increase",
             value=f"{len(kept)} stamps" + (f", {stamps[kept[0]]:g} to {stamps[kept[-1]]:g}" if len(kept) else ""),
             limit=f"{FEWEST} different ones",
-            remedy="give stamps that grow (turn those that fall), or the rate of the samples: `time: {rate: HZ}`",
+            remedy="give stamps that grow (turn those that fall; the time of day needs float64, not float32), or the "
+            "rate of the samples: `time: {rate: HZ}`",
         )
     usual = float(np.median(steps[steps > 0.0]))
     if (steps < 0.0).any() and steps.min() > -MIXED_UP * usual:
