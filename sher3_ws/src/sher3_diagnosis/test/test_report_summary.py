@@ -58,6 +58,11 @@ def verdict(status, **more):
 @pytest.mark.parametrize(
     ("answer", "text"),
     [
+        (
+            Verdict(status="no_gap", notes=["not judged, no motion: elbow"]),
+            "No gap where it was judged: the machine does what its model says, to within its own repeatability; "
+            "not judged, no motion: elbow.",
+        ),
         (Verdict(status="no_gap"), "No gap: the machine does what its model says, to within its own repeatability."),
         (verdict("attributed", causes=[FRICTION]), "Coulomb friction on delta 2, 300 mN: 98 % of the gap."),
         (

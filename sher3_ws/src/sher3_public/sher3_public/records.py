@@ -37,17 +37,22 @@ class Arrays:
 
 
 def is_table(record: object) -> bool:
-    """Return whether a record is a table with names: a mapping, or a frame of pandas or Polars."""
-    return isinstance(record, Mapping) or (hasattr(record, "columns") and hasattr(record, "__getitem__"))
+    """Return whether a record is a table with names: a mapping, a structured array, a frame of pandas or Polars."""
+    named = isinstance(record, np.ndarray) and record.dtype.names is not None
+    return named or isinstance(record, Mapping) or (hasattr(record, "columns") and hasattr(record, "__getitem__"))
 
 
 def tables_at(record: object) -> object:
-    """Return the tables of a log whose path is given, or of several, one for each run; other records as they are.
+    """Return the tables of a log by its path, or of several, one for each run; a list of samples by name as one table.
+
+    Other records stay as they are.
 
     Raises:
         MachineError: no such file, no known format, or a table that cannot be read.
     """
-    given = list(record) if isinstance(record, list | tuple) else [record]
+    given: list[Any] = list(record) if isinstance(record, list | tuple) else [record]
+    if given and all(isinstance(x, Mapping) and all(np.ndim(v) == 0 for v in x.values()) for x in given):
+        return {name: [row.get(name, np.nan) for row in given] for name in given[0]}  # one mapping for each sample
     paths = [Path(x) for x in given if isinstance(x, str | PathLike)]
     if not paths or len(paths) < len(given):
         return record
@@ -58,14 +63,20 @@ def tables_at(record: object) -> object:
 
 def columns_of(table: Any) -> dict[str, Array]:
     """Return the columns (n, ...) of a table by name, times in s, an index of stamps as the time, texts left out."""
-    names = list(table) if isinstance(table, Mapping) else list(table.columns)
-    found = {str(name): _as_numbers(table[name]) for name in names}
+    array = isinstance(table, np.ndarray)
+    names = table.dtype.names if array else list(table) if isinstance(table, Mapping) else list(table.columns)
+    found = {_named(name): _as_numbers(table[name]) for name in names}
     index = np.asarray(getattr(table, "index", [])) if not isinstance(table, Mapping) else np.array([])
     if index.dtype.kind in STAMPS and not any(name.lower() in CLOCKS for name in found):
         found["time"] = index
     columns = {name: _numbers(name, x) for name, x in found.items() if x.dtype.kind in STAMPS + "iu"}
     _check_lengths(columns)
     return columns
+
+
+def _named(name: object) -> str:
+    """Return the name of a column as one text; those of several levels are joined."""
+    return "_".join(str(x) for x in name if x) if isinstance(name, tuple) else str(name)
 
 
 def _check_lengths(columns: Mapping[str, Array]) -> None:

@@ -112,6 +112,29 @@ def test_rows_of_nan_part_a_record(log, lost):
     assert any("cut into 2 parts, because its clock has holes; 300 samples" in note for note in answer.notes)
 
 
+def test_samples_one_by_one_a_structured_array_and_names_in_two_levels(log):
+    """As `to_dict("records")`, `to_records()` and a frame with a MultiIndex hold them."""
+    names = [
+        ("time", ""),
+        ("position", "shoulder"),
+        ("position", "elbow"),
+        ("command", "shoulder"),
+        ("command", "elbow"),
+    ]
+    columns = [log[0], *log[2].T, *log[1].T]
+    plain = ["_".join(x for x in name if x) for name in names]
+    rows = [dict(zip(plain, map(float, row), strict=True)) for row in np.column_stack(columns)]
+    for table in (rows, np.rec.fromarrays(columns, names=",".join(plain)), dict(zip(names, columns, strict=True))):
+        assert named(gap.diagnose(MODEL, table)) == {("coulomb_friction", "elbow")}
+
+
+def test_no_gap_says_which_joint_was_not_judged(log):
+    """An actuator with a filter of its own: its force does not follow from its control."""
+    answer = gap.diagnose(MODEL.replace('kp="200" kv="8"', 'kp="200" kv="8" timeconst="0.03"'), *log)
+    assert answer.headline.startswith("No gap where it was judged: ")
+    assert answer.headline.endswith("; not judged, no usable effort or no motion: elbow.")
+
+
 def test_a_compiled_model(log, tmp_path):
     mujoco.mj_saveModel(mujoco.MjModel.from_xml_string(MODEL), str(tmp_path / "robot.mjb"))
     answer = gap.diagnose(tmp_path / "robot.mjb", *log)

@@ -18,6 +18,7 @@ from sher3_diagnosis.finding import ExactFinding, Finding
 from sher3_diagnosis.fit.fitting import Fit
 from sher3_diagnosis.localise.gaps import localise
 from sher3_diagnosis.machine import Policy
+from sher3_diagnosis.report.summary import UNJUDGED
 from sher3_diagnosis.verdict import Cause, Identified
 from sher3_effects import computed, pages
 from sher3_machines.intake.notes import told_once
@@ -151,7 +152,7 @@ class Manipulator(Chain[ArmMotionEvidence]):
         """Say what cannot be told apart, which gains were found, and which joints were not judged."""
         evidence = finding.evidence
         silent = [j.name for j in self.described.joints if j.name not in evidence.judged]
-        notes = [f"not judged, no usable effort or no motion: {', '.join(silent)}"] if silent else []
+        notes = [f"{UNJUDGED}, no usable effort or no motion: {', '.join(silent)}"] if silent else []
         turned = ", ".join(evidence.turned)
         if turned:
             notes.append(f"{turned}: effort recorded with the opposite sign: friction would give energy; it was turned")

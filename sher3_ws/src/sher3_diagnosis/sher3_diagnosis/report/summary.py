@@ -19,6 +19,10 @@ WORTH_TRYING = 0.1
 """Probability of the best bet from which the next line tries it although something else is more probable."""
 
 
+UNJUDGED = "not judged"
+"""How the note begins that lists what was recorded and not judged."""
+
+
 def headline(verdict: Verdict, rests: Mapping[str, str] = MappingProxyType({})) -> str:
     """Return the answer as one sentence: the finding, its size, and how much of the gap it is.
 
@@ -28,7 +32,9 @@ def headline(verdict: Verdict, rests: Mapping[str, str] = MappingProxyType({})) 
     """
     names = [name_of(c) for c in verdict.causes]
     if verdict.status == "no_gap":
-        return "No gap: the machine does what its model says, to within its own repeatability."
+        unjudged = next((note for note in verdict.notes if note.startswith(UNJUDGED)), "")
+        where, rest = (" where it was judged", f"; {unjudged}") if unjudged else ("", "")
+        return f"No gap{where}: the machine does what its model says, to within its own repeatability{rest}."
     spoken = odds(verdict)
     if spoken:
         return _sentence(f"{spoken}.")

@@ -78,29 +78,28 @@ class WatchNode(Node):
         for subscription, take in self.heard:
             with subscription.handle:
                 while (found := subscription.handle.take_message(subscription.msg_type, True)) is not None:
-                    take(found[0])
+                    take(found[0], 1e-9 * found[1]["source_timestamp"])
         if time.monotonic() >= self.published + PUBLISHED:
             self.published = time.monotonic()
             self._tick()
 
-    def _state(self, data: bytes) -> None:
+    def _state(self, data: bytes, sent: float) -> None:
         """Take joint states; those that the window passes over are not decoded."""
         if self.window.due(stamp_of(data)):
             message = deserialize_message(data, JointState)
             self.window.state(_seconds(message.header.stamp), message.name, message.position, message.effort)
 
-    def _told(self, data: bytes) -> None:
+    def _told(self, data: bytes, sent: float) -> None:
         message = deserialize_message(data, JointState)
         self.window.command(_seconds(message.header.stamp), message.name, message.position or message.effort)
 
-    def _array(self, data: bytes) -> None:
-        message = deserialize_message(data, Float64MultiArray)
-        stamp = self.get_clock().now().nanoseconds * 1e-9
-        self.window.command(stamp, (), message.data)
+    def _array(self, data: bytes, sent: float) -> None:
+        """Take an array, which has no stamp of its own, by the time at which it was sent."""
+        self.window.command(sent, (), deserialize_message(data, Float64MultiArray).data)
 
-    def _trajectory(self, data: bytes) -> None:
+    def _trajectory(self, data: bytes, sent: float) -> None:
         message = deserialize_message(data, JointTrajectory)
-        start = _seconds(message.header.stamp) or self.get_clock().now().nanoseconds * 1e-9  # no stamp: at once
+        start = _seconds(message.header.stamp) or sent  # no stamp: at once
         points = [
             Point(_seconds(p.time_from_start), p.positions, p.velocities, p.accelerations) for p in message.points
         ]
