@@ -51,6 +51,16 @@ def test_sizes_are_what_all_coefficients_scale():
     assert linear_in(term, found) == ["size"]
 
 
+def test_a_shape_that_does_something_by_itself_has_sizes_where_its_coefficients_are_none():
+    """A dead time before a lag: it stays where the lag may be none."""
+    term, found = Term(Law("law", "spring", "one")), np.array([2.0, 4.0])
+    term.fixed = [{"channel": np.ones(3)}]
+    assert sizes_of(term, found) == ["size", "inverse", "place", "shape"]
+    told = cause(size=(-1.0, 2.0), inverse=(-1.0, 2.0), place=(-1.0, 2.0), shape=(2.0, 4.0))
+    assert not of_no_size(term, found, told)
+    assert of_no_size(Term(Law("law", "spring", "one")), found, told)
+
+
 def test_an_effect_that_is_there_by_a_choice_has_no_size():
     term = Term(Law("law", "spring", "one", discrete=frozenset({"shape"})))
     term.fixed = [{"channel": np.ones(3)}]

@@ -44,6 +44,17 @@ def test_a_late_joint_is_found_in_both_versions(tmp_path, version):
     assert any("states are in deg, because values reach" in guess for guess in answer.guessed)
 
 
+@pytest.mark.parametrize("names", [[["pan", "lift"]], {"left": ["pan"], "right": ["lift"]}])
+def test_names_in_lists_of_their_own_are_read(tmp_path, names):
+    """As a humanoid's, whose arms and hands are lists in a list."""
+    folder = write_data_set(tmp_path / "set", "v2.1", RATE, ["pan", "lift"], [episode(0), episode(1)])
+    info = json.loads((folder / "meta/info.json").read_text())
+    for feature in ("action", "observation.state"):
+        info["features"][feature]["names"] = names
+    (folder / "meta/info.json").write_text(json.dumps(info))
+    assert {c.actuator for c in gap.from_lerobot(folder).causes} == {"lift"}
+
+
 def test_a_column_for_each_joint_is_read_like_a_list(tmp_path):
     """As `observation.state.lift.pos`; actions stay a list in the second set."""
     for number, flat in enumerate((("observation.state", "action"), ("observation.state",))):

@@ -140,12 +140,14 @@ def _open(p: Parameter) -> bool:
 def sizes_of(term: Term, coefficients: Array) -> list[str]:
     """Return the parameters that say how much of an effect there is: what all coefficients scale; without any, all.
 
-    An effect that is there by a choice, such as a frame, has none: its coefficients are what is beyond that choice.
+    All of them too where the shape alone does something: a dead time stays where the lag behind it is none. An effect
+    that is there by a choice, such as a frame, has none: its coefficients are what is beyond that choice.
     """
     if term.effect.discrete and any(term.fixed):
         return []
     whole, half = _scaled(term, coefficients, 1.0), _scaled(term, coefficients, HALF)
-    return [n for n, x in whole.items() if not len(coefficients) or not math.isclose(half[n], x, rel_tol=ALIKE)]
+    alone = not len(coefficients) or any(term.fixed)
+    return [n for n, x in whole.items() if alone or not math.isclose(half[n], x, rel_tol=ALIKE)]
 
 
 def linear_in(term: Term, coefficients: Array) -> list[str]:

@@ -96,6 +96,11 @@ class GravityOnAxis(GravityLoad):
         """Return a weight at an arm and a constant force."""
         return [{**shape, "constant": 3.0}] if shape["constant"] == 2.0 else []
 
+    def plainer(self, views: Sequence[AxisView], site: str, shape: Shape) -> list[Shape]:
+        """Return the shapes of fewer numbers: over part of a turn a weight and the force beside it change places."""
+        least = shape["constant"] if shape["constant"] >= 2.0 else 0.0
+        return [s for s in self.shapes(views, site) if s["constant"] < least]
+
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
         """Return one column; for a weight at an arm sine and cosine of the position, and ones for a force beside it.
 

@@ -110,7 +110,13 @@ def drafted(path: Path, tables: Tables, rate: float | None, guesses: list[str], 
     groups = paired(once(groups, tables, guesses), tables, guesses)
     known = {name for name, _ in roles}
     left += [n for n, x in tables.items() if n not in known and n != clock and moves(x)]
-    axes = [_axis(axis, signals, tables, period, guesses) for axis, signals in groups.items()]
+    reached: dict[object, float] = {}
+    for place in (signals["position"] for signals in groups.values()):
+        reached[_spelt(place)] = max(reached.get(_spelt(place), 0.0), reach(values_of(place, tables)))
+    axes = [
+        _axis(axis, signals, tables, period, reached[_spelt(signals["position"])], guesses)
+        for axis, signals in groups.items()
+    ]
     if len(axes) == 1:
         _let_go(axes[0], values_of(next(iter(groups.values()))["position"], tables), guesses)
     told_by_speed(time, axes, tables, None if clock is None else tables[clock], guesses)
@@ -130,13 +136,22 @@ def drafted(path: Path, tables: Tables, rate: float | None, guesses: list[str], 
     return {"kind": "axes", "name": name_of(path.resolve()), "time": time, "axes": axes}
 
 
-def _unit_of(place: Place, x: Array) -> tuple[str, float, str]:
-    """Return the unit of a place, its factor, and why; of a velocity that stands for one, the unit of it."""
+def _spelt(place: Place) -> object:
+    """Return the table of a column and the words of its name but those of its axis: one logger writes in one unit."""
+    name = place[0]
+    return table_of(name), frozenset(words_of(bare(name))) - set(named(name).axis.split("_"))
+
+
+def _unit_of(place: Place, x: Array, reached: float) -> tuple[str, float, str]:
+    """Return the unit of a place, its factor, and why; of a velocity that stands for one, the unit of it.
+
+    `reached` is the largest value of all places that are spelt alike.
+    """
     what = named(place[0])
     if what.signal == "velocity":
         return (what.unit, 1.0, NAMED) if what.unit in VELOCITIES else ("rad/s", 1.0, "it is a velocity")
     slides = what.signal is not None and bool(set(what.axis.split("_")) & CARTESIAN)  # `y` beside `u` is no direction
-    return position_unit(what.unit, x, slides)
+    return position_unit(what.unit, x, slides, reached)
 
 
 def by_motion(label: str, signals: Mapping[str, Place], tables: Tables, guesses: list[str]) -> Mapping[str, Place]:
@@ -160,12 +175,14 @@ def by_motion(label: str, signals: Mapping[str, Place], tables: Tables, guesses:
     return out
 
 
-def _axis(axis: str, signals: Mapping[str, Place], tables: Tables, period: float, guesses: list[str]) -> dict[str, Any]:
+def _axis(
+    axis: str, signals: Mapping[str, Place], tables: Tables, period: float, reached: float, guesses: list[str]
+) -> dict[str, Any]:
     label = re.sub(r"\W+", "_", axis) or "axis"
     label = f"joint{label}" if label[0].isdigit() else label
     signals = by_motion(label, signals, tables, guesses)
     x = values_of(signals["position"], tables)
-    unit, factor, why = _unit_of(signals["position"], x)
+    unit, factor, why = _unit_of(signals["position"], x, reached)
     guesses.append(f"{label}: position in {unit}, because {why}")
     columns: dict[str, Any] = {}
     for signal in SIGNALS:

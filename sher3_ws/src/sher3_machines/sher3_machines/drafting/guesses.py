@@ -133,8 +133,11 @@ def in_thousandths(stamps: Array) -> bool:
     return bool((np.abs(known - np.round(known)) < WHOLE * 0.1).all() and fine.mean() > 0.5)
 
 
-def position_unit(unit: str | None, x: Array, slides: bool = False) -> tuple[str, float, str]:
-    """Return the unit of a position (n,), its factor, and why; `slides`: the name of the axis says so."""
+def position_unit(unit: str | None, x: Array, slides: bool = False, reached: float = 0.0) -> tuple[str, float, str]:
+    """Return the unit of a position (n,), its factor, and why.
+
+    `slides`: the name of the axis says so. `reached`: the largest value of all positions in the same unit.
+    """
     if unit is not None and unit in UNITS and unit not in ("count", "%", "1"):
         return unit, 1.0, NAMED
     largest = reach(x)
@@ -145,6 +148,7 @@ def position_unit(unit: str | None, x: Array, slides: bool = False) -> tuple[str
     if slides:
         unit = "mm" if largest > WIDEST_ROOM else "m"
         return unit, 1.0, f"its axis is named as one that slides, and values reach {largest:.4g}"
+    largest = max(largest, reached)
     if largest > TOO_FAR:
         return "deg", 1.0, f"values reach {largest:.4g}"
     return "rad", 1.0, f"values reach {largest:.4g}; write m for an axis that slides"

@@ -32,8 +32,14 @@ def test_the_draft_of_a_slide_can_be_imported(tmp_path):
 def test_every_guess_is_said(tmp_path):
     found = written(tmp_path, "t,joint1_position,joint2_position", TIME, np.sin(TIME), 90.0 * np.sin(TIME))
     assert any("joint2: position in deg, because values reach 90" in x for x in found.guesses)
-    assert any("joint1: position in rad" in x for x in found.guesses)
+    assert any("joint1: position in deg" in x for x in found.guesses)  # a logger writes all its joints in one unit
     assert all(f"# guessed: {guess}\n" in found.text for guess in found.guesses)
+
+
+def test_columns_that_are_spelt_otherwise_have_units_of_their_own(tmp_path):
+    found = written(tmp_path, "t,wrist_angle,elbow_pos", TIME, 90.0 * np.sin(TIME), np.cos(3.0 * TIME))
+    assert any("wrist: position in deg" in x for x in found.guesses)
+    assert any("elbow: position in rad" in x for x in found.guesses)
 
 
 def test_counts_are_seen(tmp_path):

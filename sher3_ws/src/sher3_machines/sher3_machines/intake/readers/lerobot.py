@@ -110,7 +110,7 @@ def _info(path: Path) -> dict[str, Any]:
 
 
 def _joints(info: Mapping[str, Any], feature: str) -> list[str]:
-    """Return the names of a feature's entries; older versions have them below a key, some have none.
+    """Return the names of a feature's entries; some have them below keys or in lists of their own, some have none.
 
     Some data sets have a column for each joint, `FEATURE.JOINT.pos`.
     """
@@ -118,9 +118,9 @@ def _joints(info: Mapping[str, Any], feature: str) -> list[str]:
         flat = [name.removeprefix(f"{feature}.") for name in info["features"] if name.startswith(f"{feature}.")]
         return [name for name in flat if name.endswith(f".{SIGNALS[feature]}")] or flat
     names, width = info["features"][feature].get("names"), info["features"][feature]["shape"][0]
-    if isinstance(names, dict):
-        names = next((x for x in names.values() if isinstance(x, list)), None)
-    return [str(x) for x in names] if names and len(names) == width else [f"joint{i + 1}" for i in range(width)]
+    parts = names.values() if isinstance(names, dict) else names or ()
+    flat = [str(x) for part in parts for x in (part if isinstance(part, list) else [part])]
+    return flat if len(flat) == width else [f"joint{i + 1}" for i in range(width)]
 
 
 def _column(feature: str, joint: str) -> str:
