@@ -6,11 +6,12 @@ from xml.etree.ElementTree import tostring
 import numpy as np
 import pytest
 from sher3_diagnosis import diagnose
+from sher3_diagnosis.verdict import Interval
 from sher3_export import ExportError
 from sher3_export.check import check as checking
 from sher3_export.check import coverage as covering
 from sher3_export.check import engine
-from sher3_export.check.check import check
+from sher3_export.check.check import Checked, JointGap, check
 from sher3_export.check.coverage import DRAWS, Windows, covered, inside, scatter_of
 from sher3_export.errors import MujocoMissing
 from sher3_export.ranges import Ranges, interval, shares_of, worlds_of
@@ -44,6 +45,13 @@ def test_numbers_that_were_not_applied_would_show(case):
     wrong = verdict(cause("coulomb_friction", force=0.1))
     (gap,) = check(wrong, Path("case"), None).gaps
     assert gap.after > 0.9 * gap.before
+
+
+@pytest.mark.parametrize(("errors", "worse"), [([(1.0, 1.5), (1.0, 0.8)], True), ([(1.0, 1.1), (2.0, 0.4)], False)])
+def test_a_model_is_worse_in_the_mean_over_its_joints(errors, worse):
+    """(1.5^2 + 0.8^2) / 2 = 1.45; (1.1^2 + 0.2^2) / 2 = 0.63; a joint that never moved says nothing."""
+    gaps = [JointGap("j", before, after, Interval(value=0.0)) for before, after in [*errors, (0.0, 0.0)]]
+    assert Checked(None, gaps).worse is worse
 
 
 def test_ranges_cover_motion_that_they_were_not_set_on(case):

@@ -5,6 +5,9 @@ import json
 import pytest
 import yaml
 from sher3_chain.manipulator.description import BEHIND
+from sher3_diagnosis.verdict import Interval
+from sher3_export.check import check as checking
+from sher3_export.check.check import Checked, JointGap
 from sher3_gap_cli.app import app
 from typer.testing import CliRunner
 
@@ -59,6 +62,14 @@ def test_a_model_is_written_and_what_it_cannot_express_is_listed(call, tmp_path)
     data = json.loads(found.stdout)
     assert len(data["written"]) == 1 and data["not_expressed"][0].startswith("transmission_ripple on j")
     assert 'frictionloss="2"' in (tmp_path / "exported.xml").read_text()
+
+
+def test_a_model_that_predicts_worse_is_not_written(call, tmp_path, monkeypatch):
+    gaps = [JointGap("j", 0.18, 0.27, Interval(value=-1.0)), JointGap("k", 0.31, 0.22, Interval(value=0.5))]
+    monkeypatch.setattr(checking, "check", lambda *given: Checked(None, gaps))
+    found = call("--to", "mjcf", "--model", "m.xml", "--check", "case", "--out", "x.xml")
+    assert found.exit_code == 2 and not (tmp_path / "x.xml").exists()
+    assert "j: 0.18 nominal, 0.27 exported" in found.output and "without --check" in found.output
 
 
 def test_a_motor_behind_a_coupling_is_a_tendon(call, tmp_path):

@@ -52,6 +52,11 @@ class Checked:
     exported: Exported
     gaps: Sequence[JointGap]
 
+    @property
+    def worse(self) -> bool:
+        """Whether the exported model predicts worse than the nominal one: in the mean square over all joints alike."""
+        return float(np.mean([(gap.after / gap.before) ** 2 for gap in self.gaps if gap.before])) > 1.0
+
 
 def nominal_model(case: Path, model: Path | None) -> tuple[Element, object, Sequence[Any]]:
     """Return the nominal model, the machine and its runs; without a model, one is made of the description.

@@ -83,6 +83,16 @@ def _model(
     if to != "mjcf":
         raise RequestError("only MJCF is checked in MuJoCo", value=f"--to {to}", limit="mjcf", remedy="use --to mjcf")
     found = checked(given, check, model, names, motors)
+    if found.worse:
+        told = "; ".join(f"{g.joint}: {g.before:.4g} nominal, {g.after:.4g} exported" for g in found.gaps)
+        remedy = (
+            "keep the nominal model, or leave a cause out: sher3 gap diagnose CASE --without EFFECT; without --check "
+            "the file is written all the same"
+        )
+        limit = "a position error below the nominal model's"
+        raise RequestError(
+            "the exported model predicts worse, and is not written", value=told, limit=limit, remedy=remedy
+        )
     return _exported(found.exported, found.gaps)
 
 
@@ -121,7 +131,7 @@ def _told(data: dict[str, Any]) -> str:
     lines += [f"  not expressed: {text}" for text in data.get("not_expressed", [])]
     for gap in data.get("gaps", []):
         before, after = (quantity(gap[which], gap["unit"]) for which in ("before", "after"))
-        closed = f"{gap['closure']['value']:.1%} closed"
+        closed = f"{gap['closure']['value']:.1%} closed" if gap["after"] <= gap["before"] else "worse"
         lines.append(f"  MuJoCo, {gap['joint']}: {before} rms nominal, {after} exported, {closed}")
     for name, share in data.get("coverage", {}).items():
         lines.append(f"  {name}: {share:.1%} of held-out motion within the 90 % ranges")
