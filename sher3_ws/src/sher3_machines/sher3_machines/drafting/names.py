@@ -29,7 +29,7 @@ VELOCITY = vocabulary(
     "velocity velocities vel speed qd dq omega qdot qvel gyro drehzahl geschwindigkeit rate dot thetadot xdot "
     "velocidad velocidade vitesse velocità"
 )
-EFFORT = vocabulary("effort efforts torque torques tau taus force iq trq moment drehmoment strom kraft amps qfrc")
+EFFORT = vocabulary("effort efforts torque torques tau taus tao force iq trq moment drehmoment strom kraft amps qfrc")
 CURRENT = vocabulary("current currents curr cur i corriente courant corrente")
 """A current is an effort, but the current position is the measured one."""
 COMMAND = vocabulary("control ctrl u input eingang voltage volt voltaje spannung pwm duty vir valve ventil")

@@ -238,7 +238,7 @@ def paired(groups: dict[str, dict[str, Place]], tables: Tables, guesses: list[st
     if any(set(words_of(bare(signals["position"][0]))) & MEMBERS for signals in groups.values()):
         return groups
     x, y = (values_of(signals["position"], tables) for signals in (first, second))
-    if len(x) != len(y) or abs(np.corrcoef(x, y)[0, 1]) < TOGETHER:
+    if len(x) != len(y) or not (moves(x) and moves(y)) or abs(np.corrcoef(x, y)[0, 1]) < TOGETHER:
         return groups
     names = first["position"][0], second["position"][0]
     guesses.append(f"{names[0]!r} and {names[1]!r} are two encoders of one axis, because they move together")

@@ -42,6 +42,13 @@ def test_columns_that_are_spelt_otherwise_have_units_of_their_own(tmp_path):
     assert any("elbow: position in rad" in x for x in found.guesses)
 
 
+@pytest.mark.filterwarnings("error")
+def test_two_places_that_never_change_are_no_two_encoders_of_one_axis(tmp_path):
+    """As the bounds of a motion that are logged beside it."""
+    found = written(tmp_path, "t,lower_position,upper_position", TIME, 0.0 * TIME - 0.2, 0.0 * TIME + 0.5)
+    assert not any("two encoders" in x for x in found.guesses)
+
+
 def test_counts_are_seen(tmp_path):
     found = written(tmp_path, "t,enc", TIME, np.round(5000.0 * np.sin(TIME)))
     assert "unit: count" in found.text and any("placeholder" in x for x in found.guesses)

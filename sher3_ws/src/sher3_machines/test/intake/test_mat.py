@@ -29,6 +29,13 @@ def test_rows_of_a_struct_array_are_stacked(tmp_path):
     assert found["rows/t"].ravel().tolist() == [1.0, 2.0] and found["rows/q"].shape == (2, 2)
 
 
+def test_a_file_without_an_array_says_what_only_matlab_opens(tmp_path):
+    """As of a table, which is an object."""
+    scipy.io.savemat(tmp_path / "a.mat", {"note": "text"})
+    with pytest.raises(MachineError, match="writetable"):
+        read_tables(tmp_path / "a.mat")
+
+
 def test_cells_are_numbered(tmp_path):
     cells = np.empty((1, 3), dtype=object)
     cells[0, :] = [np.ones((4, 2)), np.ones((5, 2)), "text"]

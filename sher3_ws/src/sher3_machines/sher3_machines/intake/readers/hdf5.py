@@ -16,6 +16,9 @@ from sher3_machines.errors import no_reader
 from sher3_machines.intake.readers.native import read_in_child, whole
 from sher3_machines.intake.readers.shapes import plain, stacked
 
+NO_NUMBERS = (
+    "no array of numbers; a table or another object of MATLAB is opened there alone: writetable, or save arrays"
+)
 MAGIC = b"\x89HDF\r\n\x1a\n"
 """How HDF5 files begin; behind 512 bytes of a header those of MATLAB."""
 ENDINGS = (".h5", ".hdf5", ".hdf", ".he5", ".h5df")
@@ -61,7 +64,7 @@ def arrays(raw: bytes, limit: int) -> dict[str, Array]:
         columns = [_columns(file, name, dataset) for name, dataset in wanted.items()]
     found = {name: x for part in columns for name, x in part.items() if x.size}
     if not found:
-        raise ValueError("no numeric dataset")
+        raise ValueError(NO_NUMBERS)
     return found
 
 

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from sher3_diagnosis.channel import Array
 
-from sher3_machines.intake.readers.hdf5 import MAGIC, read_raw
+from sher3_machines.intake.readers.hdf5 import MAGIC, NO_NUMBERS, read_raw
 from sher3_machines.intake.readers.native import read_in_child, whole
 from sher3_machines.intake.readers.shapes import plain, stacked
 
@@ -46,7 +46,7 @@ def read_mat(path: Path) -> dict[str, Array]:
 
 
 def arrays(raw: bytes, limit: int) -> dict[str, Array]:
-    """Return the arrays of a file to version 7; raises ValueError where they unpack to more than `limit`, bytes."""
+    """Return the arrays of a file to version 7; raises ValueError without any or beyond `limit`, bytes unpacked."""
     import scipy.io
 
     declared = _declared(BytesIO(raw))
@@ -57,6 +57,8 @@ def arrays(raw: bytes, limit: int) -> dict[str, Array]:
     for name, value in scipy.io.loadmat(BytesIO(raw), verify_compressed_data_integrity=True).items():
         if not name.startswith("__"):
             found |= flatten(name, value)
+    if not found:
+        raise ValueError(NO_NUMBERS)
     return found
 
 
