@@ -182,7 +182,8 @@ def not_judged(judged: Sequence[str], signals: Sequence[JointSignals], slips: Ma
     if not judged:
         remedy = (
             "record efforts, or give a model whose actuators say what force a control is; of a servo whose reference "
-            "was recorded state the gains, `command_law: {kind: force, position_gain: ..., velocity_gain: ...}`"
+            "was recorded state the gains, `command_law: {kind: force, position_gain: ..., velocity_gain: ...}`, or "
+            "leave the model out: each joint is then a servo by itself"
         )
         return MachineError(
             "no joint can be judged: none has a force that is known and a position that moves",

@@ -38,7 +38,8 @@ def told_by_speed(
         if ratio is not None and abs(ratio - 1.0) < AGREES:
             guesses.append(f"{axis['name']}: velocity is {axis['signals']['velocity']['column']!r}; the clock agrees")
         elif axis["signals"].pop("velocity", None) is not None:
-            guesses.append(f"{axis['name']}: its recorded velocity is not used, because it does not agree")
+            said = f": the position moves {ratio:.3g} times as far" if ratio else ""
+            guesses.append(f"{axis['name']}: its recorded velocity is not used, because it does not agree{said}")
 
 
 def _counted(signals: Mapping[str, Any]) -> bool:
