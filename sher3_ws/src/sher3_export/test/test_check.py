@@ -50,7 +50,7 @@ def test_numbers_that_were_not_applied_would_show(case):
 @pytest.mark.parametrize(("errors", "worse"), [([(1.0, 1.5), (1.0, 0.8)], True), ([(1.0, 1.1), (2.0, 0.4)], False)])
 def test_a_model_is_worse_in_the_mean_over_its_joints(errors, worse):
     """(1.5^2 + 0.8^2) / 2 = 1.45; (1.1^2 + 0.2^2) / 2 = 0.63; a joint that never moved says nothing."""
-    gaps = [JointGap("j", before, after, Interval(value=0.0)) for before, after in [*errors, (0.0, 0.0)]]
+    gaps = [JointGap("j", before, after, "rad", Interval(value=0.0)) for before, after in [*errors, (0.0, 0.0)]]
     assert Checked(None, gaps).worse is worse
 
 

@@ -65,11 +65,14 @@ def test_a_model_is_written_and_what_it_cannot_express_is_listed(call, tmp_path)
 
 
 def test_a_model_that_predicts_worse_is_not_written(call, tmp_path, monkeypatch):
-    gaps = [JointGap("j", 0.18, 0.27, Interval(value=-1.0)), JointGap("k", 0.31, 0.22, Interval(value=0.5))]
+    gaps = [
+        JointGap("j", 0.18, 0.27, "rad", Interval(value=-1.0)),
+        JointGap("k", 0.31, 0.22, "rad", Interval(value=0.5)),
+    ]
     monkeypatch.setattr(checking, "check", lambda *given: Checked(None, gaps))
     found = call("--to", "mjcf", "--model", "m.xml", "--check", "case", "--out", "x.xml")
     assert found.exit_code == 2 and not (tmp_path / "x.xml").exists()
-    assert "j: 0.18 nominal, 0.27 exported" in found.output and "without --check" in found.output
+    assert "j: 0.18 rad nominal, 0.27 exported" in found.output and "without --check" in found.output
 
 
 def test_a_motor_behind_a_coupling_is_a_tendon(call, tmp_path):

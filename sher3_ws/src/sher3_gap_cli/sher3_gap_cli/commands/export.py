@@ -84,7 +84,7 @@ def _model(
         raise RequestError("only MJCF is checked in MuJoCo", value=f"--to {to}", limit="mjcf", remedy="use --to mjcf")
     found = checked(given, check, model, names, motors)
     if found.worse:
-        told = "; ".join(f"{g.joint}: {g.before:.4g} nominal, {g.after:.4g} exported" for g in found.gaps)
+        told = "; ".join(f"{g.joint}: {g.before:.4g} {g.unit} nominal, {g.after:.4g} exported" for g in found.gaps)
         remedy = (
             "keep the nominal model, or leave a cause out: sher3 gap diagnose CASE --without EFFECT; without --check "
             "the file is written all the same"
