@@ -19,6 +19,7 @@ from sher3_machines.intake.readers.shapes import plain, stacked
 NO_NUMBERS = (
     "no array of numbers; a table or another object of MATLAB is opened there alone: writetable, or save arrays"
 )
+"""What is said of a file without one."""
 MAGIC = b"\x89HDF\r\n\x1a\n"
 """How HDF5 files begin; behind 512 bytes of a header those of MATLAB."""
 ENDINGS = (".h5", ".hdf5", ".hdf", ".he5", ".h5df")
