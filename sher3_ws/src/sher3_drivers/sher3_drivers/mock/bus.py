@@ -3,6 +3,9 @@
 At SYNC k the plant integrates [t_k-1, t_k] with the demands received since SYNC k-1, and the drives report its reading.
 So the nominal latency is zero and echo(k) = command(k-1), as the recorded-run contract asks. While no SYNC comes, the
 plant goes on at its own period with the drives' stop ramps: a robot whose host died travels on as far as a real one.
+
+Time alone says how many steps the plant makes. A process that was held up finds several SYNCs: it makes up for the time
+and answers the newest, since nobody takes an older answer, and to give it would hold the next one up as well.
 """
 
 from __future__ import annotations
@@ -27,7 +30,7 @@ _FREE_RUN_PERIODS = 5
 _MOST_FREE_STEPS = 1000
 """Periods made up for in one call at most: a process that was suspended for longer does not hang in the past."""
 _BATCHES = 64
-"""Batches of frames taken in by one `poll` at most."""
+"""Batches of frames taken in by one `serve` or `poll` at most."""
 
 FrameTamper = Callable[[int, bytes, int], bytes]
 Crossing = Callable[[str, Sequence[float]], Sequence[float]]
@@ -69,6 +72,7 @@ class _Channel:
         synced: it has had the SYNC of this tick; frames behind it wait until the plant has made its step.
         synced_at: time of that SYNC, ns.
         live: it had a SYNC whenever the other channels had one.
+        overtaken: another SYNC came before the one of this tick was answered.
     """
 
     def __init__(self, drives: Sequence[MockDrive]) -> None:
@@ -76,33 +80,32 @@ class _Channel:
         self.synced = False
         self.synced_at = 0
         self.live = True
+        self.overtaken = False
         self._by_node = {drive.node_id: (drive,) for drive in drives}
         self._waiting: list[tuple[int, bytes]] = []
 
     def take(self, can_id: int, data: bytes, now: int) -> None:
         """Take a frame for the drive whose node id it carries, or, without one (NMT, other nodes), for all drives."""
-        if self.synced:
-            self._waiting.append((can_id, data))
-        elif can_id == SYNC_ID:
-            self.synced = self.live = True
+        if can_id == SYNC_ID:
+            overtaken = self.synced
+            self.go_on(now)
+            self.overtaken, self.synced, self.live = overtaken, True, True
             self.synced_at = now
             for drive in self.drives:
                 drive.counter = data[0] if data else 0
+        elif self.synced:
+            self._waiting.append((can_id, data))
         else:
             for drive in self._by_node.get(can_id & NODE_MASK, self.drives):
                 drive.receive(can_id, data, now)
 
     def go_on(self, now: int) -> None:
-        """Take the frames that wait behind the SYNC which has been answered."""
-        self.synced = False
+        """Take the frames that wait behind a SYNC which has been answered, or never will be."""
+        self.synced = self.overtaken = False
         if self._waiting:
             waiting, self._waiting = self._waiting, []
             for can_id, data in waiting:
                 self.take(can_id, data, now)
-
-    def sync_waits(self) -> bool:
-        """Whether a further SYNC waits behind the one that is being answered."""
-        return any(can_id == SYNC_ID for can_id, _ in self._waiting)
 
 
 class MockDriveBus:
@@ -191,26 +194,41 @@ class MockDriveBus:
         return bundle([part if len(part) % FRAME_SIZE == 0 else b"" for part in parts])
 
     def serve(self, timeout: float) -> bool:
-        """Wait at most `timeout` s for frames and handle the next bundle; False when none came.
+        """Wait at most `timeout` s for frames and handle all that wait; False when none came.
 
-        SYNCs are answered, heartbeats and watchdogs kept going.
+        The newest SYNC is answered, heartbeats and watchdogs kept going.
         """
-        frames = self._group.receive(timeout)
-        if self._group.failures:
-            raise next(iter(self._group.failures.values()))
-        now, channels = self._clock(), self._channels
-        if self.tamper_received is not None:
-            frames = self._tampered(self.tamper_received, frames, True)
-        elif not frames and now == self._served_at:
+        frames = self._receive(timeout)
+        now = self._clock()
+        if not frames and now == self._served_at and self.tamper_received is None:
             return False  # in stepped time: all that was due has been done
         self._served_at = now
-        for can_id, length, number, data in BUNDLED.iter_unpack(frames):
-            if number < len(channels):
-                channels[number].take(can_id, data[:length], now)
-        while self._synced(now):
+        self._take(frames, now)
+        if self._synced(now):
+            if self._make_up_for(now) and (more := self._receive(0.0)):
+                self._take(more, now)  # that took time: what came meanwhile goes first
             self._step(now)
         self._keep_going(now)
         return bool(frames)
+
+    def _receive(self, timeout: float) -> bytes:
+        """Return all that waits, as a bundle; wait at most `timeout` s for the first of it."""
+        frames = self._group.receive(timeout)
+        for _ in range(_BATCHES if frames and self._group.waits else 0):
+            if not (more := self._group.receive(0.0)):
+                break
+            frames += more
+        if self._group.failures:
+            raise next(iter(self._group.failures.values()))
+        return frames
+
+    def _take(self, frames: bytes, now: int) -> None:
+        """Give the frames of a bundle to the channels."""
+        if self.tamper_received is not None:
+            frames = self._tampered(self.tamper_received, frames, True)
+        for can_id, length, number, data in BUNDLED.iter_unpack(frames):
+            if number < len(self._channels):
+                self._channels[number].take(can_id, data[:length], now)
 
     def _keep_going(self, now: int) -> None:
         """Let the plant go on without SYNC, and heartbeats and watchdogs when they are due."""
@@ -239,7 +257,7 @@ class MockDriveBus:
         if len(synced) == len(self._channels) or not synced:
             return bool(synced)
         missing = [channel for channel in self._channels if channel.live and not channel.synced]
-        overdue = any(channel.sync_waits() or now - channel.synced_at > self._period_ns // 2 for channel in synced)
+        overdue = any(channel.overtaken or now - channel.synced_at > self._period_ns // 2 for channel in synced)
         if missing and not overdue:
             return False
         for channel in missing:
@@ -248,7 +266,6 @@ class MockDriveBus:
 
     def _step(self, now: int) -> None:
         """Step the plant, answer the SYNC on the channels that had it, and take what waited behind it."""
-        self._make_up_for(now)
         self.step_end = min([channel.synced_at for channel in self._channels if channel.synced])
         frames = self._plant_step()
         self._send(b"".join([frames[drive.node_id - 1] for c in self._channels if c.synced for drive in c.drives]))
@@ -257,8 +274,8 @@ class MockDriveBus:
         for channel in self._channels:
             channel.go_on(now)
 
-    def _make_up_for(self, now: int) -> None:
-        """Make the steps of SYNCs that did not come: a drive goes on in time whether it is asked or not."""
+    def _make_up_for(self, now: int) -> bool:
+        """Make the steps of SYNCs that get no answer, if any: a drive goes on in time whether it is asked or not."""
         if not self.ticks or abs(now - self._stepped_at) > 1000 * self._period_ns:
             self._stepped_at = now - self._period_ns
         late = round((now - self._stepped_at) / self._period_ns) - 1
@@ -266,6 +283,7 @@ class MockDriveBus:
             self._stepped_at += self._period_ns
             self.step_end = self._stepped_at
             self._free_step(now)
+        return late > 0
 
     def _free_step(self, now: int) -> None:
         for drive in self.drives.values():
