@@ -26,7 +26,6 @@ Over a hundred revolutions every encoder of the robot has a whole number of incr
 _SPARE = 0.05
 """What the drive's own position limits leave beyond the ends of travel, as a share of it."""
 _INT32 = 2**31 - 1
-_INT16 = 2**15 - 1
 _WHOLE = 1e-6
 """How far a number of increments or revolutions may be off a whole one and still be taken for it, relative."""
 
@@ -129,32 +128,20 @@ class AxisScale:
         Raises:
             ScaleError: it is not finite, or does not fit 32 bits.
         """
-        return _counts(self.name, "velocity", velocity, self.velocity, _INT32)
-
-    def load_counts(self, position: float) -> int:
-        """Return the load encoder counts nearest to a position, m or rad; raise ScaleError as `velocity_counts`."""
-        return _counts(self.name, "load position", position, self.load_encoder, _INT32)
+        return _counts(self.name, "velocity", velocity, self.velocity)
 
     def motor_counts(self, position: float) -> int:
         """Return the motor encoder counts nearest to a position, m or rad; raise ScaleError as `velocity_counts`."""
-        return _counts(self.name, "motor position", position, self.motor_encoder, _INT32)
-
-    def effort_counts(self, effort: float) -> int:
-        """Return the torque counts nearest to an effort, N or N m.
-
-        Raises:
-            ScaleError: it is not finite, or does not fit 16 bits.
-        """
-        return _counts(self.name, "effort", effort, self.effort, _INT16)
+        return _counts(self.name, "motor position", position, self.motor_encoder)
 
 
-def _counts(axis: str, quantity: str, value: float, resolution: float, limit: int) -> int:
-    """Return a value in counts of `resolution`, whose number must not exceed `limit`."""
+def _counts(axis: str, quantity: str, value: float, resolution: float) -> int:
+    """Return a value in counts of `resolution`, whose number has to fit 32 bits."""
     counts = value / resolution
-    if not (math.isfinite(counts) and abs(round(counts)) <= limit):
+    if not (math.isfinite(counts) and abs(round(counts)) <= _INT32):
         remedy = "send a finite value within the range"
         raise ScaleError(
-            f"{axis}: {quantity} does not fit its object", value=value, limit=limit * resolution, remedy=remedy
+            f"{axis}: {quantity} does not fit its object", value=value, limit=_INT32 * resolution, remedy=remedy
         )
     return round(counts)
 

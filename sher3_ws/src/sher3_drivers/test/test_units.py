@@ -19,13 +19,7 @@ int32 = st.integers(-(2**31) + 1, 2**31 - 1)
 @given(axes, int32)
 def test_counts_survive_si_and_back(scale, counts):
     assert scale.velocity_counts(counts * scale.velocity) == counts
-    assert scale.load_counts(counts * scale.load_encoder) == counts
     assert scale.motor_counts(counts * scale.motor_encoder) == counts
-
-
-@given(axes, st.integers(-32767, 32767))
-def test_effort_survives(scale, counts):
-    assert scale.effort_counts(counts * scale.effort) == counts
 
 
 @given(axes, st.floats(-1.0, 1.0))
@@ -43,7 +37,7 @@ def test_velocity_rounding_moves_nothing_measurable_in_ten_minutes(scale):
 
 @pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf, 1e9])
 def test_what_does_not_fit_is_refused(value):
-    for convert in (SCALES[0].velocity_counts, SCALES[0].load_counts, SCALES[0].effort_counts):
+    for convert in (SCALES[0].velocity_counts, SCALES[0].motor_counts):
         with pytest.raises(ScaleError, match="delta_1"):
             convert(value)
 
