@@ -36,8 +36,7 @@ def reads(force=(0.0, 0.0, 0.0), torque=(0.0, 0.0, 0.0)):
 )
 def test_what_weight_and_tare_do_not_explain_bars_arming(force, torque, source, value, limit, unit):
     contact, zero = ToolContact(ROBOT), ZeroDetector(SETTINGS.tare)
-    for _ in range(SETTINGS.tare.arming_samples):
-        zero.feed(contact.at_tip(reads(force, torque), LEVEL))
+    zero.rest([(0, contact.at_tip(reads(force, torque), LEVEL))] * SETTINGS.tare.arming_samples)
     found = zero.check(0)
     assert (found.reason, found.source, found.unit) == (Reason.FORCE_UNEXPLAINED, source, unit)
     assert (found.value, found.limit) == (pytest.approx(value), limit)
@@ -63,16 +62,25 @@ def test_the_bias_of_the_tare_explains_what_it_took():
 
 def test_the_newest_tenth_of_a_second_counts():
     zero = ZeroDetector(SETTINGS.tare)
-    for _ in range(200):
-        zero.feed((2.0, 0.0, 0.0, 0.0, 0.0, 0.0))
+    zero.rest([(0, (2.0, 0.0, 0.0, 0.0, 0.0, 0.0))] * 200)
     for number in range(50):
         assert zero.check(0) is not None or number >= 49
-        zero.feed((0.0,) * 6)
+        zero.rest([(0, (0.0,) * 6)])
     assert zero.check(0) is None
 
 
 def test_a_sensor_without_numbers_bars_arming():
     zero = ZeroDetector(SETTINGS.tare)
-    assert zero.check(0) is None, "a sensor that says nothing is WRENCH_MISSING"
-    zero.feed((float("nan"),) * 6)
+    zero.rest([(0, (float("nan"),) * 6)])
     assert zero.check(0) is not None
+
+
+def test_a_sensor_that_never_speaks_in_a_tick_of_the_axes_bars_arming_and_nothing_later():
+    zero = ZeroDetector(SETTINGS.tare)
+    assert zero.check(0) is None, "before the first look"
+    zero.rest(())
+    assert zero.check(0).value == float("inf")
+    zero.rest([(0, (0.0,) * 6)])
+    assert zero.check(10**8) is None and zero.check(2 * 10**8).value == float("inf")
+    zero.begin()
+    assert zero.check(0) is None, "with power the wrench is a hand's"

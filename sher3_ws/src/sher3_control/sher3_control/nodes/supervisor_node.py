@@ -182,11 +182,12 @@ class SupervisorNode(Node):
         if not powered:
             self._hand.begin()
             self._moved = NO_STAMP
-        if not resting:
+        touched = self._touched.take()
+        if resting:
+            at_tip = self._contact.at_tip
+            self._zero.rest((w.stamp, at_tip(w.wrench, j.position)) for w, j in touched if j.position is not None)
+        else:
             self._zero.begin()
-        for wrench, joints in self._touched.take():
-            if resting and joints.position is not None:
-                self._zero.feed(self._contact.at_tip(wrench.wrench, joints.position))
         for wrench, joints, forces, command in self._ticks.take():
             if powered and joints.position is not None and forces.effort is not None:
                 contact = self._contact.at_tip(wrench.wrench, joints.position)

@@ -8,10 +8,12 @@ dead bands: a zero that passes moves nothing by itself, however old the tare is.
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import Iterable
 from contextlib import suppress
 
 import numpy as np
 from sher3_common.reasons import Reason
+from sher3_common.stamps import NO_STAMP, age
 from sher3_common.vectors import ZERO_WRENCH, Vector, Wrench
 from sher3_description import ACTUATORS, Robot
 from sher3_kinematics.kernel import kernel_parameters
@@ -26,6 +28,8 @@ from sher3_control.supervision.detectors import Finding, PlainDetector
 COMPONENTS = ("force x", "force y", "force z", "torque x", "torque y", "torque z")
 """Components of the wrench at the tip in {t}."""
 UNITS = ("N", "N", "N", "N m", "N m", "N m")
+NEW = 0.1
+"""Oldest newest sample that tells of a zero [s], as of any stream that is watched."""
 ROLL, TILT = ACTUATORS.index("roll"), ACTUATORS.index("tilt")
 
 
@@ -63,18 +67,24 @@ class ZeroDetector(PlainDetector):
     def __init__(self, settings: TareSettings) -> None:
         self._limits = np.repeat((settings.drift_force, settings.drift_torque), 3)
         self._samples: deque[Vector] = deque(maxlen=settings.arming_samples)
+        self.begin()
 
     def begin(self) -> None:
         """Forget the samples: the drives have power, and the wrench is a hand's."""
         self._samples.clear()
+        self._newest, self._rests = NO_STAMP, False
 
-    def feed(self, contact: Vector) -> None:
-        """Take the contact wrench at the tip (6,) of a tick without power."""
-        self._samples.append(contact)
+    def rest(self, contacts: Iterable[tuple[int, Vector]]) -> None:
+        """Take stamps [ns] and contact wrenches at the tip (6,) of ticks without power."""
+        self._rests = True
+        for self._newest, contact in contacts:
+            self._samples.append(contact)
 
     def look(self, now: int) -> Finding:
-        """Return the component that is farthest from zero; zero without samples, which is another watch's business."""
-        mean = np.mean(self._samples, axis=0) if self._samples else np.zeros(6)
+        """Return the component that is farthest from zero; without power it is infinite where nothing new is known."""
+        mean = np.zeros(6)
+        if self._rests:
+            mean = np.mean(self._samples, axis=0) if age(now, self._newest) <= NEW else np.full(6, np.inf)
         share = np.abs(mean) / self._limits
         k = int(np.argmax(share))
         source = f"force sensor, {COMPONENTS[k]}"
