@@ -19,14 +19,17 @@ Signal = Callable[[int, str, Mask], Array]
 def eaten(finding: Finding, signal: Signal) -> dict[Channel, float]:
     """Return channel -> floor over signal of each balance without a gap whose floor hides a share worth a name."""
     evidence: Evidence = finding.evidence
-    out = {}
-    for channel in (c for c in evidence.channels if c.stage == BALANCE and c not in finding.significant):
-        runs = [(r, x[channel].ok) for r, x in enumerate(evidence.data.residuals) if channel in x]
-        floor = np.sqrt(np.mean([evidence.floors[r][channel][0] ** 2 for r, _ in runs]))
-        rms = np.sqrt(np.mean(np.concatenate([signal(r, channel.actuator, ok) for r, ok in runs]) ** 2))
-        if floor > EATEN * rms:
-            out[channel] = float(floor / rms) if rms > 0.0 else np.inf
-    return out
+    balances = [c for c in evidence.channels if c.stage == BALANCE and c not in finding.significant]
+    shares = {c: hidden_share(evidence, c, signal) for c in balances}
+    return {c: share for c, share in shares.items() if share > EATEN}
+
+
+def hidden_share(evidence: Evidence, channel: Channel, signal: Signal) -> float:
+    """Return the floor of a balance over its signal; infinite without a signal."""
+    runs = [(r, x[channel].ok) for r, x in enumerate(evidence.data.residuals) if channel in x]
+    floor = np.sqrt(np.mean([evidence.floors[r][channel][0] ** 2 for r, _ in runs]))
+    rms = np.sqrt(np.mean(np.concatenate([signal(r, channel.actuator, ok) for r, ok in runs]) ** 2))
+    return float(floor / rms) if rms > 0.0 else np.inf
 
 
 def unjudged(finding: Finding, signal: Signal) -> dict[Channel, str]:

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
-from sher3_diagnosis.channel import Channel, Residual, Residuals
+import numpy as np
+from sher3_diagnosis.channel import Array, Channel, Mask, Residual, Residuals
 from sher3_machines.errors import MachineError
 from sher3_machines.intake.mending.parts import whole
 from sher3_machines.thresholds import BLOCKS
@@ -22,6 +24,7 @@ from sher3_chain.constants import ZERO, constants
 from sher3_chain.joint.description import Axis
 from sher3_chain.joint.own_unit import renamed
 from sher3_chain.joint.record import AxesRun
+from sher3_chain.power import BALANCE, hidden_share
 from sher3_chain.readings.level import at_a_level, level_note, off, off_note
 from sher3_chain.readings.signals import AxisSignals, signals_of
 from sher3_chain.thresholds import NO_INERTIA
@@ -57,16 +60,32 @@ class AxisEvidence(ChainEvidence):
 def gather_axis(runs: Sequence[AxesRun], axis: Axis, repeats: bool) -> AxisEvidence:
     """Compute residuals and floors of one axis and cut them into blocks.
 
-    An axis of which nothing else can be judged, because its effort is dead or tells no force balance, is judged by how
-    it follows its reference, where one was recorded.
+    An axis of which nothing else can be judged, because its effort is dead, tells no force balance, or one whose floor
+    is larger than its forces, is judged by how it follows its reference, where one was recorded.
     """
     found = _gathered(runs, axis, repeats)
     tracked = axis.tracked if all("reference" in run.signals[axis.name] for run in runs) else None
-    if tracked is None or found.channels:
+    if tracked is None or any(c.stage != BALANCE or force_is_seen(found, c) for c in found.channels):
         return found
     judged = _gathered(runs, tracked, repeats)
     note = f"{axis.name}: its effort tells no force balance; judged by how it follows its reference"
     return replace(judged, untold=found.untold, notes=[*found.notes, *judged.notes, note])
+
+
+def force_is_seen(evidence: AxisEvidence, channel: Channel) -> bool:
+    """Return whether the forces of a balance are larger than its floor."""
+    return hidden_share(evidence, channel, partial(signal_of, evidence)) < 1.0
+
+
+def signal_of(evidence: AxisEvidence, r: int, site: str, ok: Mask) -> Array:
+    """Return the force of an axis, recorded or needed, or what a servo was asked beside its mean, (n,)."""
+    view = evidence.data.views[r]
+    run = view.run
+    if evidence.axis.servo:
+        asked = run.to_grid(run.reference)[ok, 0]
+        return np.asarray(asked - asked.mean())
+    given, needed = run.to_grid(run.effort)[ok, 0], view.inertial[ok, 0]
+    return np.maximum(np.abs(given), np.abs(needed))
 
 
 def _gathered(runs: Sequence[AxesRun], axis: Axis, repeats: bool) -> AxisEvidence:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from sher3_diagnosis.attribute.plan import SearchPlan
 from sher3_diagnosis.attribute.rivals import Attribution
-from sher3_diagnosis.channel import Array, Channel, Mask
+from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.effect import Effect
 from sher3_diagnosis.finding import ExactFinding, Finding
 from sher3_diagnosis.machine import Policy, Rehearsal
@@ -25,7 +25,7 @@ from sher3_chain.axes.causes.detection_limits import unseen_note
 from sher3_chain.axes.causes.plan import AXIS
 from sher3_chain.axes.causes.refine import refine_free
 from sher3_chain.axes.command.law import LAW, is_law, law_of_axis
-from sher3_chain.axes.evidence import AxisEvidence, gather_axis, levels_of
+from sher3_chain.axes.evidence import AxisEvidence, gather_axis, levels_of, signal_of
 from sher3_chain.axes.foreseen import foreseen
 from sher3_chain.axes.limits import LIMIT, limit_finding
 from sher3_chain.axes.replay import replay
@@ -137,7 +137,7 @@ class Axes(Chain[AxisEvidence]):
 
     def unjudged(self, finding: Finding[AxisEvidence]) -> dict[Channel, str]:
         """Say where the floor of an axis without a gap eats its force, or what a servo was asked."""
-        return unjudged(finding, partial(_signal, finding.evidence))
+        return unjudged(finding, partial(signal_of, finding.evidence))
 
     def reporter(self) -> AxesReporter:
         """Return the part of this machine in a report."""
@@ -181,17 +181,6 @@ class Commands(Axes):
     def remarks(self, finding: Finding[AxisEvidence]) -> list[str]:
         """Say whether the command is what its law states."""
         return law_notes(finding)
-
-
-def _signal(evidence: AxisEvidence, r: int, site: str, ok: Mask) -> Array:
-    """Return the force of an axis, recorded or needed, or what a servo was asked beside its mean, (n,)."""
-    view = evidence.data.views[r]
-    run = view.run
-    if evidence.axis.servo:
-        asked = run.to_grid(run.reference)[ok, 0]
-        return np.asarray(asked - asked.mean())
-    given, needed = run.to_grid(run.effort)[ok, 0], view.inertial[ok, 0]
-    return np.maximum(np.abs(given), np.abs(needed))
 
 
 def nothing_judged(parts: Sequence[AxisEvidence], runs: Sequence[AxesRun]) -> MachineError:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Mapping, Sequence
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 from sher3_machines.intake.fields import VELOCITIES, Clock, Column, Strict
@@ -82,7 +82,7 @@ class Axis(Strict):
         carried: file name of a run, without its ending -> known mass that was put on the axis in it, kg or kg m^2. It
             moves with the axis; its weight, where the axis lifts it, is `applied`.
         viscous: viscous coefficient, N/(m/s) or N m/(rad/s).
-        encoder_resolution: one count, m or rad.
+        encoder_resolution: one count, m or rad; left out: the `step` of the position's column, in its unit.
         encoder_at: side of the transmission that `position` is read on; with one encoder it says what that one hides.
         effort_resolution: one step of the measured force, N or N m.
         lead: travel per motor revolution, m or rad; without it cogging is not named.
@@ -103,6 +103,17 @@ class Axis(Strict):
     effort_resolution: float = Field(default=0.0, ge=0.0)
     lead: float | None = Field(default=None, gt=0.0)
     range: tuple[float, float] | None = None
+
+    @model_validator(mode="before")
+    @classmethod
+    def _counted(cls, data: Any) -> Any:
+        """Take the count of the encoder from the step of the position's column, where it is not stated itself."""
+        match data:
+            case {"encoder_resolution": _}:
+                return data
+            case {"signals": {"position": {"step": float() | int() as step} as column}}:
+                return {**data, "encoder_resolution": abs(step * Column.model_validate(column).scale)}
+        return data
 
     @model_validator(mode="after")
     def _complete(self) -> Axis:

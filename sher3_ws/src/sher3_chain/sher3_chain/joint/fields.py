@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from sher3_machines.intake.columns import find
-from sher3_machines.intake.mending.fields import signed, unsigned_bits
+from sher3_machines.intake.mending.fields import signed
 from sher3_machines.intake.tables import Tables
 
 from sher3_chain.joint.description import ChainDescription
@@ -18,8 +18,8 @@ def with_signs(tables: Tables, machine: ChainDescription, run: str) -> tuple[Tab
     out, notes = dict(tables), []
     for axis, which, column in described:
         name = None if column is None else find(column.column, tables, run)
-        if name is None or tables[name].ndim != 1 or not (bits := unsigned_bits(tables[name])):
+        if name is None or tables[name].ndim != 1:
             continue
-        out[name] = signed(tables[name], bits)
-        notes.append(f"{run}: {axis}.{which} ({name}) has {2**bits - 1} for -1, as a field of {bits} bits has; signed")
+        out[name], said = signed(tables[name])
+        notes += [f"{run}: {axis}.{which} ({name}) has {said} has; signed"] if said else []
     return out, notes

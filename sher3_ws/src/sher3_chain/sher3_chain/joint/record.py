@@ -38,6 +38,8 @@ MIN_SAMPLES = 20
 """Samples a run must have: five blocks of the smallest size. Several short runs are judged together."""
 ROUNDING = 1e-6
 """Share by which a period may be off through rounding."""
+STILL = 1e-3
+"""Share of its span by which a signal moves across a hole at most that nobody posted a change in."""
 SIGNALS = ("position", "reference", "command", "effort", "load", "nominal_effort", "applied", "temperature")
 """Signals of an axis, as the description names them."""
 
@@ -293,7 +295,7 @@ def _clock(found: list[Stamped], clock: Clock, run: str, polled: bool) -> tuple[
             raise MachineError(f"{run}: columns differ in length", value=sorted(lengths), remedy="give a time column")
         return np.arange(min(lengths)) / clock.rate, 1.0 / clock.rate, []
     longest = LONGEST_HOLE + (LONGEST_HOLD if polled else 0.0)  # rows that were left out, and a row that is late
-    stamps = [_checked(t, run, longest) for t, _ in found if t is not None]
+    stamps = [_checked(t, x, run, longest) for t, x in found if t is not None]
     period = float(max(np.median(np.diff(t)) for t in stamps))  # of the slowest signal: between its samples is nothing
     start, end = max(t[0] for t in stamps), min(t[-1] for t in stamps)
     if end - start < (MIN_SAMPLES - 1) * period * (1.0 - ROUNDING):
@@ -310,8 +312,11 @@ def _clock(found: list[Stamped], clock: Clock, run: str, polled: bool) -> tuple[
     return start + period * np.arange(samples), period, notes + ([note] if uneven > JITTER else [])
 
 
-def _checked(t: Array, run: str, longest: float) -> Array:
-    """Stamps (n,), refused where they run backwards or have a hole of more periods than the longest."""
+def _checked(t: Array, x: Array, run: str, longest: float) -> Array:
+    """Stamps (n,), refused where they run backwards or have a hole of more periods than the longest.
+
+    A hole in which a signal (n,) did not move is none: monitors of a control system post what changes.
+    """
     steps = np.diff(t)
     if (steps <= 0.0).any():
         at = int(np.argmax(steps <= 0.0)) + 1
@@ -320,9 +325,10 @@ def _checked(t: Array, run: str, longest: float) -> Array:
             value=f"{steps[at - 1]:.3g} s",
             remedy="cut the record there",
         )
-    hole = float(steps.max() / np.median(steps))
+    unseen = np.where(np.abs(np.diff(x)) > STILL * float(np.ptp(x)), steps, 0.0)
+    hole = float(unseen.max() / np.median(steps))
     if hole > longest:
-        at = int(np.argmax(steps)) + 1
+        at = int(np.argmax(unseen)) + 1
         raise MachineError(
             f"{run}: a hole of {steps[at - 1]:.3g} s before sample {at}",
             value=f"{hole:.0f} periods",

@@ -151,7 +151,6 @@ def _joint(axis: Mapping[str, Any], joint: str, slides: bool, guesses: list[str]
     if slides and signals["position"]["unit"] == "rad":
         signals["position"]["unit"] = "m"
     out = {"name": joint, "motion": "linear" if slides else "rotary", "signals": signals}
-    out["encoder_resolution"] = axis["encoder_resolution"]
     if slides and "velocity" in signals and signals["velocity"]["unit"] == "rad/s":
         signals["velocity"]["unit"] = "m/s"
     if "reference" in signals:

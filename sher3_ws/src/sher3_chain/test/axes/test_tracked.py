@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from scipy.signal import lfilter
+from sher3_chain.axes import evidence
 from sher3_chain.joint.record import AxesRun
 from sher3_diagnosis import diagnose
 from slides import columns, machine
@@ -35,3 +36,19 @@ def test_a_duty_that_tells_no_force_leaves_the_tracking_to_be_judged(seed):
     assert [c.effect for c in verdict.causes] == ["drive_lag"]
     assert verdict.causes[0].parameters["time_constant"].value == pytest.approx(lag, rel=0.1)
     assert any("judged by how it follows its reference" in note for note in verdict.notes)
+
+
+@pytest.mark.parametrize(("times", "judged"), [(1.0, False), (1e6, True)])
+def test_forces_below_their_floor_leave_the_tracking_to_be_judged(monkeypatch, times, judged):
+    """A drive that reports what it gives ten times a second: nobody foresees more than it."""
+    own = evidence.floors_of
+    floors = lambda *given: [{c: times * floor for c, floor in found.items()} for found in own(*given)]  # noqa: E731
+    monkeypatch.setattr(evidence, "floors_of", floors)
+    _, run = hobby_servo(0)
+    place = run.signals["slide"]["position"]
+    force = 3.0 * np.gradient(np.gradient(place, run.period), run.period) + 2.0 * np.gradient(place, run.period)
+    run = AxesRun("run", run.period, {"slide": {**run.signals["slide"], "effort": force}})
+    signals = columns("position", "reference", "effort")
+    described = machine(mass=3.0, signals=signals, encoder_resolution=COUNT, command_law={"kind": "force"}).described
+    found = evidence.gather_axis([run], described.axes[0], False)
+    assert found.axis.servo == judged and any("judged by how it follows" in note for note in found.notes) == judged

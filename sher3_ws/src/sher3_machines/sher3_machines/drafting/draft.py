@@ -28,6 +28,7 @@ from sher3_machines.drafting.speeds import told_by_speed
 from sher3_machines.errors import MachineError
 from sher3_machines.intake.fields import TIME_UNITS, VELOCITIES
 from sher3_machines.intake.kind import Draft
+from sher3_machines.intake.mending.fields import signed
 from sher3_machines.intake.runs import longest
 from sher3_machines.intake.spelling import bare, table_of
 from sher3_machines.intake.tables import Tables
@@ -170,9 +171,17 @@ def by_motion(label: str, signals: Mapping[str, Place], tables: Tables, guesses:
         if not told or ratio_of(out, tables, signal):
             continue
         del out[signal]
-        words += "" if out.setdefault(force, place) == place else ", and not used"
+        other = out.setdefault(force, place)
+        if other != place and _has_sign(place, tables) > _has_sign(other, tables):
+            out[force], words = place, f"{words}, and has a sign, which {other[0]!r} has not"
+        words += "" if out[force] == place else ", and not used"
         guesses.append(f"{label}: {place[0]!r} is {words}, because it does not move with the position")
     return out
+
+
+def _has_sign(place: Place, tables: Tables) -> bool:
+    """Return whether a column goes below zero, if only in a field that took its sign."""
+    return float(signed(values_of(place, tables))[0].min()) < 0.0
 
 
 def _axis(
@@ -189,7 +198,8 @@ def _axis(
         if signal in signals:
             place = signal in PLACES
             usual = unit if place else per_second(unit) if signal == "velocity" else None
-            columns[signal] = _column(*signals[signal], usual, factor if place else 1.0)
+            counts = place or (signal == "velocity" and named(signals[signal][0]).unit is None)
+            columns[signal] = _column(*signals[signal], usual, factor if counts else 1.0)
             if signal not in ("position", "velocity"):
                 guesses.append(f"{label}: {signal} is {signals[signal][0]!r}, because of its name")
     _without_other_force(label, columns, guesses)
@@ -205,19 +215,17 @@ def _axis(
             columns["reference"]["factor"] = columns["position"]["factor"]
         unit, own = columns["load"]["unit"] if sliding else unit, unit
     count = 1.0 if own == "count" and bool((x == np.round(x)).all()) else count_of(x)
-    resolution = (count or scatter(x) or 1e-6) * factor * UNITS[own]
-    said = "its smallest step" if count else "its scatter: no step is seen"
+    step, said = count or scatter(x) or 1e-6, "its smallest step" if count else "its scatter: no step is seen"
     if own in VELOCITIES:
-        resolution, said = resolution * period, f"{said}, over a period"
-    si = "rad" if unit in ROTARY else "m"
-    guesses.append(f"{label}: encoder_resolution {resolution:.3g} {si}, {said}; another unit changes it too")
+        step, said = step * period, f"{said}, over a period"
+    columns["position"]["step"] = float(f"{step:.6g}")
+    guesses.append(f"{label}: one count of its encoder is {step:.3g} of the numbers recorded, {said}")
     law = _law(label, columns, guesses)
     out: dict[str, Any] = {"name": label, "motion": "rotary" if unit in ROTARY else "linear", "signals": columns}
     out["command_law"] = law
     if law["kind"] == "force":
         guesses.append(f"{label}: mass is not known and will be identified from the record; state it where you can")
         out["mass"] = "unknown"
-    out["encoder_resolution"] = float(f"{resolution:.6g}")
     turns = own == "rev" or own in VELOCITIES  # may well be many
     named_so = why == NAMED and not turns
     return {**out, **(_range(label, x * UNITS[own] * factor, str(out["motion"]), guesses) if named_so else {})}

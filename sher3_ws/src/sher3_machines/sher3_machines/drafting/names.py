@@ -34,7 +34,7 @@ CURRENT = vocabulary("current currents curr cur i corriente courant corrente")
 """A current is an effort, but the current position is the measured one."""
 COMMAND = vocabulary("control ctrl u input eingang voltage volt voltaje spannung pwm duty vir valve ventil")
 ASKED = vocabulary(
-    "ref reference set setpoint sp desired des target goal soll demand commanded cmd command action qg d "
+    "ref reference set setpoint sp desired des target tgt goal soll demand commanded cmd command action qg d "
     "planned cmptd computed"
 )
 MEASURED = vocabulary("actual act measured meas present est estimate estimated ist feedback fb")
@@ -234,7 +234,7 @@ def bare_and_unit(name: str) -> tuple[str, str | None]:
 def tells_time(column: str) -> bool:
     """Return whether a column's name says that it is a time."""
     known, unit = bare_and_unit(bare(column))
-    return bool(set(words_of(known)) & TIME) or (not known and unit in TIME_UNITS)
+    return bool(set(words_of(known)) & TIME) or (unit in TIME_UNITS and not set(words_of(known)) & PULSES)
 
 
 def counts_samples(column: str) -> bool:

@@ -64,7 +64,7 @@ def placed(tables: Tables, clock: str | None, guesses: list[str], held: bool = F
         held: whether a place that never changes counts: a joint that is held still carries the others.
     """
     living = _living(counted_alike(_named(tables, clock)), tables, guesses, held)
-    return with_loads(with_speeds(with_drive(with_output(living, tables))))
+    return with_loads(with_speeds(with_drive(with_output(with_controller(living, tables), tables))))
 
 
 def counted_alike(placed: Mapping[Place, tuple[str, str]]) -> dict[Place, tuple[str, str]]:
@@ -110,16 +110,32 @@ def _living(
 ) -> dict[Place, tuple[str, str]]:
     """Return the signals without what was not connected: a reading that never changes, beside places that do.
 
-    What an axis is asked for may stay.
+    What an axis is asked for may stay; a column without a number is none.
     """
     stays = (*ASKED_FOR, "position") if held else ASKED_FOR
-    dead = [p for p, (signal, _) in placed.items() if signal not in stays and not moves(values_of(p, tables))]
+    found = {p: (signal, values_of(p, tables)) for p, (signal, _) in placed.items()}
+    dead = [p for p, (signal, x) in found.items() if not (moves(x) or (signal in stays and len(x)))]
     alive = {p: what for p, what in placed.items() if p not in dead}
     if not any(signal in ("position", "load", "velocity") for signal, _ in alive.values()):
         return dict(placed)
     if dead:
         guesses.append(f"never changes, and is not used: {', '.join(dict.fromkeys(name for name, _ in dead))}")
     return alive
+
+
+def with_controller(placed: Mapping[Place, tuple[str, str]], tables: Tables) -> dict[Place, tuple[str, str]]:
+    """Return the signals with what a controller reads and puts out, as its libraries call them, beside its set-point.
+
+    `Input` is then the place and `Output` what drives; `out` drives where no other column does.
+    """
+    signals = {signal for signal, _ in placed.values()}
+    found = {bare(name).lower(): (name, None) for name, x in tables.items() if x.ndim == 1 and moves(x)}
+    if not signals & set(ASKED_FOR):
+        return dict(placed)
+    if "input" in found and "output" in found and not signals & {"position", "velocity"}:
+        return {**placed, found["input"]: ("position", ""), found["output"]: ("command", "")}
+    drives = "out" in found and not signals & {"command", "effort"}
+    return {**placed, found["out"]: ("command", "")} if drives else dict(placed)
 
 
 def with_output(placed: Mapping[Place, tuple[str, str]], tables: Tables) -> dict[Place, tuple[str, str]]:

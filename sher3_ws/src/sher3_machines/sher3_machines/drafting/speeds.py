@@ -10,6 +10,7 @@ from sher3_diagnosis.channel import Array
 
 from sher3_machines.drafting.names import named
 from sher3_machines.intake.fields import TIME_UNITS, VELOCITIES
+from sher3_machines.intake.mending.fields import signed
 from sher3_machines.intake.mending.motion import AGREES, likely_unit, speed_ratio
 from sher3_machines.intake.tables import SAMPLES, Tables
 from sher3_machines.intake.units import UNITS
@@ -54,7 +55,6 @@ def _count_told(axis: dict[str, Any], ratio: float, guesses: list[str]) -> None:
     for signal in ("position", "reference"):
         if signal in signals and signals[signal]["unit"] == "count":
             signals[signal]["factor"] = float(f"{signals[signal]['factor'] / ratio:.6g}")
-    axis["encoder_resolution"] = float(f"{abs(axis['encoder_resolution'] / ratio):.6g}")
     guesses.append(
         f"{axis['name']}: `factor` of a count {signals['position']['factor']:.6g}: the recorded speed says so"
     )
@@ -76,5 +76,5 @@ def _ratio(
 def _numbers(column: Mapping[str, Any], tables: Tables) -> Array:
     """Return the samples of a drafted column in SI units."""
     x = tables[column["column"]]
-    x = x if "index" not in column else x[:, column["index"]]
+    x, _ = signed(x if "index" not in column else x[:, column["index"]])
     return np.asarray(x * UNITS[column["unit"]] * column.get("factor", 1.0))

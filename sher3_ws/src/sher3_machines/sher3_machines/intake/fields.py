@@ -53,6 +53,8 @@ class Column(Strict):
         signed_by: column whose sign a magnitude takes, or `motion`: the sign of the motion; an effort alone has one.
         late: s after its stamp at which a sample acts, such as the delay that a model states of an actuator.
         within: smallest and largest recorded number that acts, such as the range of a control; beyond, the bound does.
+        step: smallest step of the recorded numbers; that of a position is the count of its encoder, in any unit. Of a
+            speed that stands for a place it is the step times a period.
         plus: columns that are added to it, each with its own factor: the pressure on the other side of a piston, the
             second motor of a portal.
     """
@@ -66,6 +68,7 @@ class Column(Strict):
     signed_by: str | None = None
     late: float = Field(default=0.0, ge=0.0)
     within: tuple[float, float] | None = None
+    step: float | None = Field(default=None, gt=0.0)
     plus: tuple[Column, ...] = ()
 
     @field_validator("unit", mode="before")

@@ -146,7 +146,7 @@ def upright(tables: Tables) -> Tables:
 
     MATLAB users write a row for each joint as often as one for each sample. Lists of the matrix' own table count before
     those of the file, and short lists, such as a gain for each joint, where there are none of samples alone. A table
-    without a header that is much wider than long has a row for each signal.
+    without a header, or a matrix by itself, that is much wider than long has a row for each signal.
     """
     if tables and all(UNNAMED.fullmatch(n) for n in tables) and _is_wide(tables):
         return {f"c{i}": row for i, row in enumerate(np.array(list(tables.values())).T)}
@@ -157,7 +157,11 @@ def _is_wide(tables: Tables) -> bool:
     """Whether columns (n,) of a table are more than samples, by far."""
     rows = {x.shape for x in tables.values()}
     shape = rows.pop()
-    return not rows and len(shape) == 1 and shape[0] < SAMPLES and len(tables) > WIDE * shape[0]
+    return not rows and len(shape) == 1 and _wide(shape[0], len(tables))
+
+
+def _wide(rows: int, columns: int) -> bool:
+    return rows < SAMPLES and columns > WIDE * rows
 
 
 def _lies(name: str, x: Array, tables: Tables) -> bool:
@@ -167,7 +171,7 @@ def _lies(name: str, x: Array, tables: Tables) -> bool:
     for lists in (*({n for n in lists if n >= SAMPLES} for lists in (of_table, of_file)), of_table, of_file):
         if lists & set(x.shape):
             return x.shape[1] in lists and x.shape[0] not in lists
-    return False
+    return not of_file and _wide(*x.shape)
 
 
 def with_whole_clocks(tables: Tables) -> Tables:

@@ -26,7 +26,7 @@ KNOWN: Mapping[str, tuple[float, str]] = {
     "rad/s": (1.0, "rad/sec rads/s"),
     "deg/s": (math.pi / 180.0, "°/s dps degrees/s deg/sec"),
     "rev/s": (2.0 * math.pi, "turns/s turn/s rps Hz"),
-    "rpm": (math.pi / 30.0, ""),
+    "rpm": (math.pi / 30.0, "r/min rev/min U/min min-1 1/min"),
     "N": (1.0, "newton newtons"),
     "kN": (1e3, ""),
     "mN": (1e-3, ""),
@@ -61,7 +61,10 @@ KNOWN: Mapping[str, tuple[float, str]] = {
 A percentage stays one, of a rated value that nobody stated, and a gram is a weight.
 """
 UNITS: Mapping[str, float] = {unit: factor for unit, (factor, _) in KNOWN.items()}
+CAPITALS = 2
+"""Letters up to which a unit in capitals is another one: `mN`, `MN`; `RPM` is rpm."""
 READ_AS = {other: unit for unit, (_, others) in KNOWN.items() for other in others.split()}
+READ_AS |= {unit: unit for unit in UNITS if len(unit) > CAPITALS}
 SHARE = re.compile(r"-?[01]\s*(:|\.\.+|to|bis)\s*\+?1")
 """A range that stands for a unit: `[-1:1]` is a share of the largest value."""
 

@@ -220,14 +220,16 @@ def test_a_speed_that_is_asked_of_both_wheels_is_the_reference_of_each(tmp_path,
     ]
 
 
-@pytest.mark.parametrize(("header", "count"), [("t,q", "0.01 rad"), ("t,q [mm]", "1e-05 m")])
-def test_a_count_is_said_with_its_unit(tmp_path, header, count):
-    """Who writes mm for the rad that was guessed sees that the count is in it too."""
+@pytest.mark.parametrize(("unit", "count"), [("rad", 0.01), ("mm", 1e-5), ("deg", np.deg2rad(0.01))])
+def test_the_count_of_an_encoder_is_in_the_unit_of_its_column(tmp_path, unit, count):
+    """Who writes mm for the rad that was guessed has the count in mm too."""
     t = np.arange(0.0, 10.0, 0.01)
     columns = np.column_stack([t, np.round(5.0 * np.sin(t), 2)])
-    np.savetxt(tmp_path / "a.csv", columns, delimiter=",", header=header, comments="")
-    said = f"axis: encoder_resolution {count}, its smallest step; another unit changes it too"
-    assert said in draft(tmp_path / "a.csv").guesses
+    np.savetxt(tmp_path / "a.csv", columns, delimiter=",", header="t,q", comments="")
+    found = draft(tmp_path / "a.csv")
+    assert "axis: one count of its encoder is 0.01 of the numbers recorded, its smallest step" in found.guesses
+    (tmp_path / "a.yaml").write_text(found.text.replace("unit: rad", f"unit: {unit}"), encoding="utf-8")
+    assert load_description(tmp_path / "a.yaml").axes[0].encoder_resolution == pytest.approx(count)
 
 
 def test_a_row_number_for_a_time_is_said(tmp_path):
@@ -294,3 +296,19 @@ def test_two_places_that_move_together_are_encoders_of_one_axis(tmp_path, header
 def test_a_refusal_lists_columns_in_the_order_in_which_names_are_given(tmp_path):
     with pytest.raises(MachineError, match=r"no column looks like a position; value t, zeta, beta"):
         written(tmp_path, "t,zeta,beta", TIME, TIME**2, np.cos(TIME))
+
+
+def test_a_servo_on_a_bus_keeps_its_signs_in_a_bit_of_their_own(tmp_path):
+    """Loads and speeds have a bit for the sign, currents none: the load is the effort, and the speed agrees."""
+    turn, amplitude = 6.0 * TIME, 300.0
+    q, v = np.round(2048.0 + amplitude * np.sin(turn)), np.round(6.0 * amplitude * np.cos(turn))
+    load = np.round(150.0 * np.cos(turn) + 80.0 * np.sin(turn))
+    asked = np.round(2048.0 + amplitude * np.sin(turn + 0.2))
+    words = [np.where(v < 0.0, 2.0**15 - v, v), np.where(load < 0.0, 2.0**10 - load, load), np.abs(load) // 10.0]
+    found = written(tmp_path, "t,target pos (1),pos (1),speed (1),load (1),current (1)", TIME, asked, q, *words)
+    axis = parse_yaml(found.text)["axes"][0]["signals"]
+    assert axis["effort"]["column"] == "load (1)" and axis["velocity"]["column"] == "speed (1)"
+    assert any("has a sign, which 'current (1)' has not" in guess for guess in found.guesses)
+    (tmp_path / "a.yaml").write_text(found.text, encoding="utf-8")
+    notes = import_case([tmp_path / "a.csv"], tmp_path / "a.yaml", tmp_path / "case")
+    assert any("1025 for -1" in note for note in notes) and any("32769 for -1" in note for note in notes)

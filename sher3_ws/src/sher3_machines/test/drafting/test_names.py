@@ -24,6 +24,7 @@ from sher3_machines.drafting.roles import together
         ("planned_q2", "reference", "2"),
         ("current_position", "position", ""),
         ("goal_position", "reference", ""),
+        ("Tgt_pos [mm]", "reference", ""),
         ("pos_estimate", "position", ""),
         ("Iq_setpoint", "command", ""),
         ("a1 q-axis [A]", "effort", "a_1_axis"),
@@ -115,6 +116,8 @@ def test_a_name_says_signal_and_axis(column, signal, axis):
         ("joint_s", None),
         ("FORCE (x)", None),
         ("wheelSpeedRpm", "rpm"),
+        ("Motor Optical Speed (RPM)", "rpm"),
+        ("speed [r/min]", "rpm"),
         ("timeMs", "ms"),
         ("positionMin", None),
     ],
@@ -124,8 +127,10 @@ def test_a_unit_stands_in_brackets_or_at_the_end(column, unit):
 
 
 def test_names_of_time():
-    assert all(tells_time(x) for x in ("t", "Time (ms)", "__time", "t_ns", "header.stamp", "Zeit [s]", "ms", "seconds"))
-    assert not any(tells_time(x) for x in ("q", "torque", "state"))
+    assert all(
+        tells_time(x) for x in ("t", "Time (ms)", "__time", "t_ns", "header.stamp", "Zeit [s]", "ms", "seconds", "i_ms")
+    )
+    assert not any(tells_time(x) for x in ("q", "torque", "state", "servo_us", "pwm [us]"))
 
 
 def test_signals_without_an_axis_of_their_own_belong_to_the_only_one():

@@ -55,3 +55,23 @@ def test_one_reading_in_two_units_is_one_axis():
 def test_motor_and_link_of_an_elastic_joint_are_one_axis(motor, link):
     (found,) = signals_of(motor, link, "tau_m").values()
     assert found == {"position": motor, "load": link, "effort": "tau_m"}
+
+
+def test_what_a_controller_reads_and_puts_out_is_place_and_command():
+    (found,) = signals_of("Setpoint", "Input", "Output").values()
+    assert found == {"position": "Input", "reference": "Setpoint", "command": "Output"}
+    (found,) = signals_of("rpm", "out", "rpm_sp").values()
+    assert found == {"position": "rpm", "reference": "rpm_sp", "command": "out"}
+
+
+def test_what_a_controller_puts_out_leaves_places_and_drives_that_say_more():
+    (found,) = signals_of("setpoint", "q", "input", "output").values()
+    assert found == {"position": "q", "reference": "setpoint", "command": "input", "load": "output"}
+    (found,) = signals_of("q", "out", "q_ref", "current").values()
+    assert found == {"position": "q", "reference": "q_ref", "effort": "current"}
+
+
+def test_a_column_without_a_number_is_no_reference():
+    tables = {"t": T, "q": np.sin(T), "Servo 1 (us)": np.full(len(T), np.nan), "Servo 3 (us)": 1500.0 + np.sin(3.0 * T)}
+    (found,) = together(placed(tables, "t", []))[0].values()
+    assert found["reference"][0] == "Servo 3 (us)"

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from sher3_machines.intake.mending.fields import signed, unsigned_bits
+from sher3_machines.intake.mending.fields import signed
 from sher3_machines.intake.readers.rows import columns_of
 
 
@@ -27,15 +27,41 @@ def test_a_remark_is_no_header():
     assert found["q"].tolist() == [1.0, 2.0, 3.0, 4.0, 5.0]
 
 
-@pytest.mark.parametrize("bits", [16, 32])
-def test_a_sign_that_a_field_took_is_given_back(bits):
-    current = np.round(40.0 * np.sin(np.arange(300.0)))
-    recorded = np.where(current < 0.0, current + 2.0**bits, current)
-    assert unsigned_bits(recorded) == bits and signed(recorded, bits).tolist() == current.tolist()
+CURRENT = np.round(40.0 * np.sin(np.arange(300.0)))
+CARRIES = {
+    "16 bits": np.where(CURRENT < 0.0, CURRENT + 2.0**16, CURRENT),
+    "32 bits": np.where(CURRENT < 0.0, CURRENT + 2.0**32, CURRENT),
+    "bit 15 is the sign": np.where(CURRENT < 0.0, 2.0**15 - CURRENT, CURRENT),
+    "bit 10 is the sign": np.where(CURRENT < 0.0, 2.0**10 - CURRENT, CURRENT),
+}
 
 
-@pytest.mark.parametrize(
-    "x", [np.arange(65536.0), np.r_[np.zeros(9), np.full(9, 65535.0)], np.arange(255.0), np.r_[-1.0, 65535.0]]
-)
-def test_other_numbers_are_left_as_they_are(x):
-    assert unsigned_bits(x) == 0
+@pytest.mark.parametrize("form", CARRIES)
+def test_a_sign_that_a_field_took_is_given_back(form):
+    found, said = signed(CARRIES[form])
+    assert found.tolist() == CURRENT.tolist() and "for -1" in said
+
+
+@pytest.mark.parametrize("most", [200.0, 500.0, 1000.0])
+def test_a_sign_in_a_bit_of_its_own_is_found_at_ten_readings_a_second(most):
+    """Loads of a servo on a bus: up to 1000, with 1024 for the sign; some readings lie between two of them."""
+    load = np.round(most * np.sin(np.arange(150.0) / 2.0) * np.sin(np.arange(150.0) / 29.0))
+    found, _ = signed(np.r_[np.nan, np.where(load < 0.0, 1024.0 - load, load)])
+    assert found[1:].tolist() == load.tolist()
+
+
+OTHERS = {
+    "ramp": np.arange(65536.0),
+    "switch": np.r_[np.zeros(9), np.full(9, 65535.0)],
+    "duty": np.arange(255.0),
+    "signed already": np.r_[-1.0, 65535.0],
+    "speed through 1024": np.round(1024.0 + 900.0 * np.sin(np.arange(500.0) / 20.0)),
+    "noise": np.round(np.random.default_rng(3).uniform(0.0, 1500.0, 500)),
+    "steps": np.repeat([0.0, 1030.0, 0.0, 1500.0, 0.0, 1200.0, 0.0, 1600.0], 9),
+}
+
+
+@pytest.mark.parametrize("name", OTHERS)
+def test_other_numbers_are_left_as_they_are(name):
+    found, said = signed(OTHERS[name])
+    assert said == "" and found is OTHERS[name]

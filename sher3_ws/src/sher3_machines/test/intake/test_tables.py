@@ -56,3 +56,9 @@ def test_texts_are_read_in_a_folder_that_holds_no_other_data(tmp_path):
     np.savetxt(tmp_path / "q.txt", np.zeros((30, 2)))
     (tmp_path / "readme.txt").write_text("how it was measured\n")
     assert set(read_tables(tmp_path)) == {"q/c0", "q/c1"}
+
+
+@pytest.mark.parametrize(("shape", "read"), [((3, 1140), (1140, 3)), ((1140, 3), (1140, 3)), ((30, 40), (30, 40))])
+def test_a_matrix_by_itself_that_is_much_wider_than_long_has_a_row_for_each_signal(tmp_path, shape, read):
+    np.save(tmp_path / "data.npy", np.arange(shape[0] * shape[1], dtype=float).reshape(shape))
+    assert {x.shape for x in read_tables(tmp_path / "data.npy").values()} == {read}
