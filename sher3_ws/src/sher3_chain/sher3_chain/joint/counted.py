@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from sher3_diagnosis.channel import Array
-from sher3_machines.intake.columns import find, pick
+from sher3_machines.intake.columns import clock_beside, find, pick
 from sher3_machines.intake.fields import TIME_UNITS
 from sher3_machines.intake.mending.counted import counted_stamps
 from sher3_machines.intake.spelling import table_of
@@ -25,7 +25,7 @@ def with_counted_clock(tables: Tables, machine: ChainDescription, run: str) -> t
     if machine.time.column is None or len(homes) != 1 or machine.time.offsets:
         return tables, []
     home = homes.pop()
-    clock = find(f"{home}/{machine.time.column}" if home else machine.time.column, tables, run)
+    clock = find(str(clock_beside(home, tables, machine.time, run)), tables, run)
     values = [tables[clock], *(pick(c, tables, run, finite=False) for c in columns)]
     if len({x.shape for x in values}) != 1 or values[0].ndim != 1 or not np.isfinite(np.array(values, float)).all():
         return tables, []

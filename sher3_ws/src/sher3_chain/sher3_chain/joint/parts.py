@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from sher3_diagnosis.channel import Array, Mask
 from sher3_machines.errors import MachineError
-from sher3_machines.intake.columns import find
-from sher3_machines.intake.fields import Column
+from sher3_machines.intake.columns import clock_beside, find
+from sher3_machines.intake.fields import Clock, Column
 from sher3_machines.intake.mending.parts import cut
 from sher3_machines.intake.mending.stretches import MOST_READINGS, beginning, spread
 from sher3_machines.intake.spelling import table_of
@@ -32,14 +32,14 @@ def parts_of_record(
     columns = columns_of(machine)
     if machine.repeats:
         most = MOST_READINGS // (len(columns) * records)
-        whole, note = beginning(name, tables, _stamps(tables, machine.time.column), most)
+        whole, note = beginning(name, tables, _stamps(tables, machine.time), most)
         return {name: whole}, note
     parts, note = _cut_at_holes(name, tables, machine)
     most, rows = MOST_READINGS // (len(columns) * records), sum(map(_rows, parts.values()))
     out: dict[str, Tables] = {}
     notes = [note] if note else []
     for part, own in parts.items():
-        found, said = spread(part, own, _stamps(own, machine.time.column), most * _rows(own) // max(rows, 1))
+        found, said = spread(part, own, _stamps(own, machine.time), most * _rows(own) // max(rows, 1))
         out |= found
         notes += [said] if said else []
     return out, "; ".join(notes)
@@ -73,21 +73,11 @@ def _rows(tables: Tables) -> int:
     return max((len(x) for x in tables.values() if x.ndim), default=0)
 
 
-def _stamps(tables: Tables, clock: str | None) -> dict[str, Array]:
+def _stamps(tables: Tables, clock: Clock) -> dict[str, Array]:
     """Return column -> stamps of its table, or the number of each sample where the clock is a rate."""
-    if clock is None:
+    if clock.column is None:
         return {name: np.arange(len(x), dtype=float) for name, x in tables.items() if x.ndim}
-    clocks = {home: _clock(tables, home, clock) for home in {table_of(name) for name in tables}}
-    beside = {name: clocks[table_of(name)] for name, x in tables.items() if x.ndim}
-    return {name: t for name, t in beside.items() if t is not None and len(t) == len(tables[name])}
-
-
-def _clock(tables: Tables, home: str, clock: str) -> Array | None:
-    """Return the stamps of a table, its own or those of all; None where there are none."""
-    for name in (f"{home}/{clock}" if home else clock, clock):
-        try:
-            found = tables[find(name, tables, "")]
-        except MachineError:
-            continue
-        return found if found.ndim == 1 and np.isfinite(found).all() else None
-    return None
+    found = {home: tables.get(str(clock_beside(home, tables, clock, ""))) for home in map(table_of, tables)}
+    known = {home: t for home, t in found.items() if t is not None and t.ndim == 1 and np.isfinite(t).all()}
+    beside = {name: known.get(table_of(name), ()) for name in tables}
+    return {name: np.asarray(t) for name, t in beside.items() if tables[name].ndim and len(t) == len(tables[name]) > 0}

@@ -163,10 +163,9 @@ def _without_repeats(tables: Tables, machine: ChainDescription, run: str) -> tup
     """
     logs: dict[str, set[str]] = {}
     for column in (c for axis in machine.chain for c in _columns(axis).values()):
-        clock = clock_beside(column, tables, machine.time, run)
-        logs.setdefault(table_of(column.column) if clock is None else clock, set()).add(
-            find(column.column, tables, run)
-        )
+        home = table_of(column.column)
+        clock = clock_beside(home, tables, machine.time, run)
+        logs.setdefault(home if clock is None else clock, set()).add(find(column.column, tables, run))
     out, notes = dict(tables), []
     for clock, named in sorted(logs.items()):
         own = [tables[c] for c in named if len(tables[c])]

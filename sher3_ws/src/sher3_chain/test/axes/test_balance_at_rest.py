@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from sher3_chain.axes.causes.balance_at_rest import dry_first, rest_loss
+from sher3_chain.axes.causes.balance_at_rest import rest_loss
 from sher3_chain.axes.evidence import gather_axis
 from sher3_chain.axes.machine import facts_of
 from sher3_chain.joint.record import AxesRun
@@ -52,14 +52,3 @@ def test_dry_friction_holds_up_to_its_size(evidence):
     found = with_cause(evidence, "coulomb_friction")
     assert STATIC * found.of(0)[0] > FORCE
     assert rest_loss(evidence, found) == 0.0
-
-
-def test_a_search_that_begins_with_dry_friction(evidence):
-    """Motion one way cannot tell a constant force from a constant friction: either may come first, if it is free to."""
-    effects = pages("axis", facts_of(evidence.axis))
-    free, bound = Candidates(evidence, effects), Candidates(evidence, effects, order=dry_first)
-    assert "gravity_load" in {f.terms[-1].effect.id for f in free.search([MOTOR])}
-    first = bound.search([MOTOR])
-    assert first and all(f.terms[-1].effect.dry for f in first)
-    later = bound.search([MOTOR], first[0].terms)
-    assert "gravity_load" in {f.terms[-1].effect.id for f in later}

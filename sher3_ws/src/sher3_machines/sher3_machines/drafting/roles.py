@@ -64,7 +64,7 @@ def placed(tables: Tables, clock: str | None, guesses: list[str], held: bool = F
         held: whether a place that never changes counts: a joint that is held still carries the others.
     """
     living = _living(counted_alike(_named(tables, clock)), tables, guesses, held)
-    return with_loads(with_speeds(with_drive(with_output(with_controller(living, tables), tables))))
+    return with_loads(with_speeds(with_drive(with_output(living, tables))))
 
 
 def counted_alike(placed: Mapping[Place, tuple[str, str]]) -> dict[Place, tuple[str, str]]:
@@ -123,29 +123,20 @@ def _living(
     return alive
 
 
-def with_controller(placed: Mapping[Place, tuple[str, str]], tables: Tables) -> dict[Place, tuple[str, str]]:
-    """Return the signals with what a controller reads and puts out, as its libraries call them, beside its set-point.
-
-    `Input` is then the place and `Output` what drives; `out` drives where no other column does.
-    """
-    signals = {signal for signal, _ in placed.values()}
-    found = {bare(name).lower(): (name, None) for name, x in tables.items() if x.ndim == 1 and moves(x)}
-    if not signals & set(ASKED_FOR):
-        return dict(placed)
-    if "input" in found and "output" in found and not signals & {"position", "velocity"}:
-        return {**placed, found["input"]: ("position", ""), found["output"]: ("command", "")}
-    drives = "out" in found and not signals & {"command", "effort"}
-    return {**placed, found["out"]: ("command", "")} if drives else dict(placed)
-
-
 def with_output(placed: Mapping[Place, tuple[str, str]], tables: Tables) -> dict[Place, tuple[str, str]]:
-    """Return the signals with a position where no name says one.
+    """Return the signals with a position, or a command, where no name says one.
 
-    It is a column `y`, where another column drives, `u`; else every column in a unit of a place.
+    A controller beside its set-point reads `Input` and puts out `Output`, or `out`. A position is a column `y`, where
+    another column drives, `u`; else every column in a unit of a place.
     """
     signals = {signal for signal, _ in placed.values()}
-    if signals & {"position", "load", "velocity"}:
-        return dict(placed)
+    plain = {bare(name).lower(): (name, None) for name, x in tables.items() if x.ndim == 1 and moves(x)}
+    asked, read = signals & set(ASKED_FOR), signals & {"position", "velocity"}
+    if asked and not read and {"input", "output"} <= plain.keys():
+        return {**placed, plain["input"]: ("position", ""), plain["output"]: ("command", "")}
+    if read or "load" in signals:
+        drives = asked and "out" in plain and not signals & {"command", "effort"}
+        return {**placed, plain["out"]: ("command", "")} if drives else dict(placed)
     if "command" in signals and "y" in tables:
         return {**placed, ("y", None): ("position", "")}
     told = {name: named(name) for name, x in tables.items() if x.ndim == 1 and (name, None) not in placed and moves(x)}

@@ -131,21 +131,20 @@ def stamps_of(column: Column, tables: Tables, clock: Clock, run: str) -> Array |
 
     A table of another clock has its offset added; the offset of the longest name that fits counts.
     """
-    name = clock_beside(column, tables, clock, run)
+    home = table_of(column.column)
+    name = clock_beside(home, tables, clock, run)
     if name is None:
         return None
-    table = f"{home}/" if (home := table_of(column.column)) else ""
     stamps = pick(_clock_column(name, clock), tables, run, finite=False)
-    known = [x for x in clock.offsets if table.startswith(x.rstrip("/") + "/")]
+    known = [x for x in clock.offsets if f"{home}/".startswith(x.rstrip("/") + "/")]
     return stamps + (clock.offsets[max(known, key=len)] if known else 0.0)
 
 
-def clock_beside(column: Column, tables: Tables, clock: Clock, run: str) -> str | None:
-    """Return the stamps that belong to a column: those of its table, else as the clock names them; None for a rate."""
+def clock_beside(table: str, tables: Tables, clock: Clock, run: str) -> str | None:
+    """Return the stamps that belong to a table: its own, else as the clock names them; None for a rate."""
     if clock.column is None:
         return None
-    table = f"{home}/" if (home := table_of(column.column)) else ""
     try:
-        return find(table + clock.column, tables, run)
+        return find(f"{table}/{clock.column}" if table else clock.column, tables, run)
     except MachineError:
         return clock.column

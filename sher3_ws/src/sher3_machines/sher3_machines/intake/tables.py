@@ -148,16 +148,10 @@ def upright(tables: Tables) -> Tables:
     those of the file, and short lists, such as a gain for each joint, where there are none of samples alone. A table
     without a header, or a matrix by itself, that is much wider than long has a row for each signal.
     """
-    if tables and all(UNNAMED.fullmatch(n) for n in tables) and _is_wide(tables):
+    rows = {x.shape for x in tables.values()} if all(map(UNNAMED.fullmatch, tables)) else set()
+    if len(rows) == 1 and len(shape := rows.pop()) == 1 and _wide(shape[0], len(tables)):
         return {f"c{i}": row for i, row in enumerate(np.array(list(tables.values())).T)}
     return {n: np.ascontiguousarray(x.T) if x.ndim == 2 and _lies(n, x, tables) else x for n, x in tables.items()}
-
-
-def _is_wide(tables: Tables) -> bool:
-    """Whether columns (n,) of a table are more than samples, by far."""
-    rows = {x.shape for x in tables.values()}
-    shape = rows.pop()
-    return not rows and len(shape) == 1 and _wide(shape[0], len(tables))
 
 
 def _wide(rows: int, columns: int) -> bool:

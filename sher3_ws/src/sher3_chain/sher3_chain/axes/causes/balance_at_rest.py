@@ -6,15 +6,13 @@ direction alone cannot tell apart, such as a constant force and a constant frict
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from sher3_diagnosis.attribute.candidates import Candidates
 from sher3_diagnosis.attribute.rivals import Attribution
 from sher3_diagnosis.channel import Array, Channel
-from sher3_diagnosis.fit.fitting import Fit, Term
+from sher3_diagnosis.fit.fitting import Fit
 from sher3_diagnosis.thresholds import NEEDED
 
 from sher3_chain.axes.view import AxisView
@@ -48,16 +46,6 @@ def _left(view: AxisView, fit: Fit, channel: Channel) -> Array:
             if channel in added:
                 left = left - added[channel][:, 0] @ fit.of(i)
     return left
-
-
-def leaves_at_rest(candidates: Candidates, found: Fit) -> bool:
-    """Return whether causes leave a force at rest that nothing holds."""
-    return rest_loss(candidates.evidence, found) > 0.0
-
-
-def dry_first(candidates: Candidates, trials: list[Fit], given: Sequence[Term]) -> list[Fit]:
-    """Return the trials of a step: of dry frictions alone as long as none is given."""
-    return trials if any(t.effect.dry for t in given) else [x for x in trials if x.terms[-1].effect.dry]
 
 
 def rivals_at_rest(evidence: Any, found: Attribution) -> Attribution:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from sher3_diagnosis.attribute.plan import Opening, SearchPlan
 from sher3_diagnosis.thresholds import WORTH
 
-from sher3_chain.axes.causes.balance_at_rest import dry_first, leaves_at_rest, rest_loss, rivals_at_rest
+from sher3_chain.axes.causes.balance_at_rest import rest_loss, rivals_at_rest
 from sher3_chain.axes.causes.behind_encoder import friction_then_hidden, something_hides
 from sher3_chain.axes.causes.confounded_laws import told_by_travel
 from sher3_chain.axes.causes.told_by_release import told_by_release
@@ -17,13 +17,9 @@ AXIS = SearchPlan(
     possible=of_one_joint,
     together=True,
     beyond=rest_loss,
-    openings=(
-        Opening(dry_first, leaves_at_rest),
-        Opening(friction_then_hidden, something_hides, worth=WORTH, unseen=True),
-    ),
+    openings=(Opening(friction_then_hidden, something_hides, worth=WORTH, unseen=True),),
     reviews=(rivals_at_rest, told_by_travel, borne_out, told_by_release),
 )
-"""Plain laws at once, then richer ones. Where the choice leaves a force at rest that nothing holds, a second search
-starts with a dry friction; where an axis has one encoder, a third with what may hide behind it. In the end the
-forces at rest and the travel tell rivals apart, causes that only reversals show are left out, and the motion of an axis
-that is let go tells which of the rivals foretells it."""
+"""Plain laws at once, then richer ones; where an axis has one encoder, a second search starts with what may hide behind
+it. In the end the forces at rest and the travel tell rivals apart, causes that only reversals show are left out, and
+the motion of an axis that is let go tells which of the rivals foretells it."""
