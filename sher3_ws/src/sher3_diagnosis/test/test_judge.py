@@ -3,6 +3,7 @@
 import pytest
 from sher3_diagnosis.finding import ExactFinding
 from sher3_diagnosis.flow import diagnose
+from sher3_diagnosis.judge.experiments.next_experiment import next_experiment
 from sher3_diagnosis.verdict import Cause, Interval, Parameter, Residual, Where
 from toy import DIRECTION, Column, Toy, ToyRun, case
 
@@ -58,6 +59,23 @@ def test_a_rival_of_another_family_is_under_excited_and_proposes_an_experiment()
     assert verdict.status == "under_excited"
     assert set(verdict.next_experiment.separates) == {"direction", "twin"}
     assert verdict.next_experiment.expected_odds is None
+
+
+def test_of_several_open_parts_the_first_alone_is_rehearsed(monkeypatch):
+    class Twice(Toy):
+        def gather(self, runs):
+            return [*super().gather(runs), *super().gather(runs)]
+
+    asked = []
+
+    def counted(machine, finding):
+        asked.append(finding)
+        return next_experiment(machine, finding)
+
+    monkeypatch.setattr("sher3_diagnosis.judge.judge.next_experiment", counted)
+    twin = Column("twin", "inertia", "direction")
+    assert diagnose(Twice((DIRECTION, twin)), case(5.0)).verdict.next_experiment is not None
+    assert len(asked) == 1
 
 
 def test_a_rival_of_the_same_family_leaves_the_cause_attributed():

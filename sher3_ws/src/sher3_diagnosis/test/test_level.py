@@ -40,11 +40,19 @@ def test_other_places_tell_the_level():
 
 
 def test_what_is_left_counts_in_units_of_the_level():
-    assert at_level(NUMBERS, 10.0 * USUAL) == pytest.approx(NUMBERS | {"left": 0.02})
+    assert at_level(NUMBERS, 10.0 * USUAL) == pytest.approx(NUMBERS | {"left": 0.025})  # a quarter of what laws explain
+    beside = at_level(NUMBERS | {"part": 0.5}, 10.0 * USUAL)  # of all laws of the gap
+    assert beside["left"] == pytest.approx(0.02 / 0.9)
     free = {"law": 0.1, "anything": 0.01}
     assert at_level(NUMBERS | free, 10.0 * USUAL).items() >= {("anything", 0.01)}  # whose law it follows has no level
     assert "law" not in at_level(NUMBERS | free, USUAL)  # and is asked once
-    assert at_level(NUMBERS, 0.003) == NUMBERS  # none is better than the labelled robots
+    assert at_level(NUMBERS, 0.003) == at_level(NUMBERS, USUAL)  # none is better than the labelled robots
+
+
+def test_half_of_a_gap_is_all_the_power_of_its_laws_which_no_level_expects():
+    assert at_level(NUMBERS | {"left": 0.5}, USUAL)["left"] == pytest.approx(1.0)
+    (half,) = odds(item("a", left=0.5))
+    assert half < 0.3  # 0.40 where half of a gap counts as half of what the laws do
 
 
 def test_twenty_per_cent_are_right_on_a_machine_that_leaves_them_everywhere_and_not_on_a_good_one():

@@ -9,6 +9,7 @@ from sher3_effects import plants
 from sher3_gap import diagnose_runs
 from sher3_gap.evidence import gather
 from sher3_gap.experiments.foreseen import LOADED, SAME, TRACKED, WARMED, foreseen
+from sher3_gap.experiments.rehearsal import rehearse
 from simulated import ROBOT, runs_of, signals
 
 SENSOR = Channel("sensing", "force_sensor")
@@ -38,6 +39,18 @@ def test_a_robot_without_a_cause_is_foreseen_at_its_floor():
     seen = next(foreseen(gather(signals(runs_of(["steps"], repeats=2)), ROBOT)))
     loss = sum(seen.data.null_loss.values()) / sum(seen.data.samples.values())
     assert loss < 1.0
+
+
+def test_each_excitation_is_simulated_once_for_every_way_to_run_it(monkeypatch):
+    made = []
+
+    def counted(robot, asked, **how):
+        made.append(asked[0][0].name)
+        return rehearse(robot, asked, **how)
+
+    monkeypatch.setattr("sher3_gap.experiments.foreseen.rehearse", counted)
+    tried = [x.excitation for x in foreseen(gather(untracked(runs_of(["steps"], repeats=2)), ROBOT))]
+    assert len(made) == len(set(made)) == len(set(tried) - {SAME}) < len(tried) / 2
 
 
 def test_a_new_sensor_shows_deviations_as_built_that_no_recorded_run_does():

@@ -15,7 +15,7 @@ from sher3_diagnosis.finding import NO_GAP, OUTSIDE, ExactFinding, Finding, Judg
 from sher3_diagnosis.fit.fitting import Fit, Term, fit
 from sher3_diagnosis.localise.gaps import component_rms
 from sher3_diagnosis.quantify.closure import closure, residual_after
-from sher3_diagnosis.verdict import Answer, Cause, Place, Residual, Where
+from sher3_diagnosis.verdict import Answer, Cause, Interval, Place, Residual, Where
 
 LISTED = 0.005
 """Probability from which an answer is listed; what is less stands in `Place.other`."""
@@ -105,12 +105,16 @@ def _bet(
     named = [_cause(finding, j, k) for j, k in chosen]
     if not quantified:
         return Answer(causes=named, probability=p)
-    evidence, after = finding.evidence, _fit(finding, causes, choice)
-    gap = finding.significant[channel]
+    found, residual = closed(finding, channel, _fit(finding, causes, choice))
+    return Answer(causes=named, probability=p, closure=found, residual=residual)
+
+
+def closed(finding: Finding, channel: Channel, after: Fit) -> tuple[Interval, Residual]:
+    """Return the closure of a gap under a fit, and what it leaves."""
+    evidence, gap = finding.evidence, finding.significant[channel]
     left = component_rms(residual_after(evidence, after, channel), gap.component)
     residual = Residual(gap=left, floor=gap.floor, unit=evidence.unit(channel, gap.component))
-    found = closure(evidence, channel, evidence.null(), after)
-    return Answer(causes=named, probability=p, closure=found, residual=residual)
+    return closure(evidence, channel, evidence.null(), after), residual
 
 
 def _fit(finding: Finding, causes: Sequence[Judged], choice: Choice) -> Fit:

@@ -9,8 +9,8 @@ import numpy as np
 
 from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.finding import LIBRARY, ExactFinding, Finding
-from sher3_diagnosis.judge.bets import exact_place, place_of, untold_place
-from sher3_diagnosis.judge.calibration.calibration import Calibration, in_force
+from sher3_diagnosis.judge.bets import closed, exact_place, place_of, untold_place
+from sher3_diagnosis.judge.calibration.calibration import in_force
 from sher3_diagnosis.judge.calibration.typical import RARE
 from sher3_diagnosis.judge.causes import ordered, places_of
 from sher3_diagnosis.judge.costs import DEFAULT, Costs
@@ -19,12 +19,12 @@ from sher3_diagnosis.judge.meaning import open_sizes
 from sher3_diagnosis.judge.probabilities import of_first, reproduced
 from sher3_diagnosis.judge.remainder import remainder
 from sher3_diagnosis.judge.status import answer_to_exact, status_of
-from sher3_diagnosis.localise.gaps import Gap, component_rms
+from sher3_diagnosis.localise.gaps import Gap
 from sher3_diagnosis.machine import Machine
-from sher3_diagnosis.quantify.closure import closure, residual_after
-from sher3_diagnosis.verdict import Cause, Closure, Interval, Place, Residual, Status, Unexplained, Verdict, Where
+from sher3_diagnosis.verdict import Closure, Interval, Place, Residual, Unexplained, Verdict, Where
 from sher3_diagnosis.words import place, share, words
 
+TINY = np.finfo(float).tiny
 Gaps = dict[Channel, Gap]
 
 
@@ -37,10 +37,12 @@ def judge(
 ) -> Verdict:
     """Build the verdict of a machine from what was found on its parts and in its exact stages."""
     calibration = in_force()
-    causes = [c for f in exact for c in _probable(f, calibration)] + [c for f in findings for c in f.causes]
+    stages = [(e, reproduced(e, calibration)) for e in exact]
+    causes = [c.model_copy(update={"probability": p}) for e, p in stages for c in e.causes]
+    causes += [c for f in findings for c in f.causes]
     gaps = [f.significant for f in findings]
     located = _located(findings)
-    places = _bets(located, exact) if exact or any(gaps) else _unlikely(findings)
+    places = [exact_place(e, p) for e, p in stages] + _bets(located) if exact or any(gaps) else _unlikely(findings)
     told: dict[str, Any] = {
         "places": places,
         "within_tolerance": [w for f in findings for w in machine.within(f)],
@@ -54,16 +56,17 @@ def judge(
     causes = ordered(causes, list(findings))
     where = [f.where for f in exact] + [w for _, _, w in located]
     stage, residual = _first(findings, gaps, exact, where[0].gap)
-    unexplained = _unexplained(findings, gaps, exact, calibration, costs)
-    proposals = [p for f in findings if (p := next_experiment(machine, f)) is not None]
+    unexplained = _unexplained(findings, gaps, stages, costs)
+    items = [j for f in findings for j in f.judged]
+    proposals = (p for f in findings if (p := next_experiment(machine, f)) is not None)
     return Verdict(
-        status=_status(findings, exact, calibration, costs),
+        status=status_of(items, [p for _, p in stages], calibration.same, costs),
         where=where,
         causes=causes,
         closure=Closure(stage=stage, tip=machine.end_to_end(findings, causes)),
         residual=residual,
         unexplained=unexplained,
-        next_experiment=proposals[0] if proposals else None,
+        next_experiment=next(proposals, None),
         **told,
     )
 
@@ -89,13 +92,12 @@ def _hidden(machine: Machine, findings: Sequence[Finding], told: dict[str, Any])
 def _located(findings: Sequence[Finding]) -> list[Located]:
     """Return the places of all parts, largest gap over floor first; those of one part as it orders them."""
     found = [(f, c, w) for f in findings for c, w in places_of(f, f.significant)]
-    return found if len(findings) == 1 else sorted(found, key=lambda x: -_ratio(x[2]))
+    return found if len(findings) == 1 else sorted(found, key=lambda x: -x[2].gap / max(x[2].floor, TINY))
 
 
-def _bets(located: Sequence[Located], exact: Sequence[ExactFinding]) -> list[Place]:
-    """Return the bets at every place, exact stages first."""
-    stages = [exact_place(e, reproduced(e, in_force())) for e in exact]
-    return stages + [place_of(f.with_all, f.judged, c, w) for f, c, w in located]
+def _bets(located: Sequence[Located]) -> list[Place]:
+    """Return the bets at every place that was fitted."""
+    return [place_of(f.with_all, f.judged, c, w) for f, c, w in located]
 
 
 def _unlikely(findings: Sequence[Finding]) -> list[Place]:
@@ -103,7 +105,7 @@ def _unlikely(findings: Sequence[Finding]) -> list[Place]:
     some = [(f, j.item.channel) for f in findings for j in f.judged]
     seen = [(f, c, w) for f, x in some for c, w in places_of(f, f.with_all.significant) if c == x]
     unique = {(id(f), c): (f, c, w) for f, c, w in seen}
-    return _bets(list(unique.values()), [])
+    return _bets(list(unique.values()))
 
 
 def _unusual(places: Sequence[Place]) -> list[str]:
@@ -116,24 +118,6 @@ def _unusual(places: Sequence[Place]) -> list[str]:
     ]
 
 
-def _probable(stage: ExactFinding, calibration: Calibration) -> list[Cause]:
-    """Return the causes of an exact stage with the probability that they are the true ones."""
-    known = reproduced(stage, calibration)
-    return [c.model_copy(update={"probability": known}) for c in stage.causes]
-
-
-def _status(
-    findings: Sequence[Finding], exact: Sequence[ExactFinding], calibration: Calibration, costs: Costs
-) -> Status:
-    """Return the status that follows from odds and costs."""
-    items = [j for f in findings for j in f.judged]
-    return status_of(items, [reproduced(e, calibration) for e in exact], calibration.same, costs)
-
-
-def _ratio(where: Where) -> float:
-    return where.gap / max(where.floor, np.finfo(float).tiny)
-
-
 def _first(
     findings: Sequence[Finding], gaps: Sequence[Gaps], exact: Sequence[ExactFinding], size: float
 ) -> tuple[Interval | None, Residual | None]:
@@ -143,31 +127,26 @@ def _first(
     for finding, own in zip(findings, gaps, strict=True):
         channel = next((c for c, g in own.items() if g.gap == size), None)
         if channel is not None:
-            evidence, after = finding.evidence, finding.attribution.fit
-            gap = own[channel]
-            left = component_rms(residual_after(evidence, after, channel), gap.component)
-            residual = Residual(gap=left, floor=gap.floor, unit=evidence.unit(channel, gap.component))
-            return closure(evidence, channel, evidence.null(), after), residual
+            return closed(finding, channel, finding.attribution.fit)
     return None, None
 
 
 def _unexplained(
     findings: Sequence[Finding],
     gaps: Sequence[Gaps],
-    exact: Sequence[ExactFinding],
-    calibration: Calibration,
+    stages: Sequence[tuple[ExactFinding, float]],
     costs: Costs,
 ) -> Unexplained | None:
-    """What is left that no effect explains: in an exact stage, or of a gap."""
-    for stage in exact:
-        if answer_to_exact(reproduced(stage, calibration), costs) != LIBRARY:
+    """What is left that no effect explains: in an exact stage, with the odds of its causes, or of a gap."""
+    for stage, known in stages:
+        if answer_to_exact(known, costs) != LIBRARY:
             reason = f"an exact stage is not reproduced: {stage.note or 'no timing or gain error fits'}"
             return Unexplained(stage=stage.where.stage, actuator=stage.where.actuator, signature=reason)
     for finding, own in zip(findings, gaps, strict=True):
         left = {c: x for c, x in finding.left.items() if c in own}
         if left:
             return _described(finding, max(left, key=left.__getitem__))
-    if not any(f.causes for f in findings) and not exact:
+    if not any(f.causes for f in findings) and not stages:
         finding, own = next((f, own) for f, own in zip(findings, gaps, strict=True) if own)
         return _described(finding, max(own, key=lambda c: own[c].power))
     return None

@@ -5,8 +5,8 @@ at every place. What a right cause leaves is then compared with the level L of t
 
     P(right | left) = sum over L of P(L | what its other places leave) P(right | left, L),
 
-where what is left counts in units of the level. The level at a place is told by the other places alone: otherwise a
-wrong cause, which leaves much, would excuse itself.
+where what is left of the gap, over what laws explain of it, counts in units of the level. The level at a place is told
+by the other places alone: otherwise a wrong cause, which leaves much, would excuse itself.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ import numpy as np
 
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.finding import Item
-from sher3_diagnosis.judge.evidence.scales import of_whole, unexplained
+from sher3_diagnosis.judge.evidence.scales import LEAST_SHARE, of_whole, unexplained
 
 LEVELS = (0.003, 0.01, 0.03, 0.1, 0.3)
 """Levels of a machine, equally likely beforehand: from the best labelled robots to three times the worst."""
@@ -44,7 +44,7 @@ def levels_told(items: Sequence[Item]) -> list[Array]:
     """Return for each cause or gap the weight of each level, as the causes of the other places tell, (k,)."""
     left: dict[Channel, list[float]] = {}
     for item in (i for i in items if i.index is not None):
-        left.setdefault(item.channel, []).append(math.log(of_whole(item.numbers)))
+        left.setdefault(item.channel, []).append(math.log(of_whole(at_level(item.numbers, USUAL))))
     likely = {channel: _likely(float(np.mean(x))) for channel, x in left.items()}
     return [_told([x for channel, x in likely.items() if channel != item.channel]) for item in items]
 
@@ -52,10 +52,12 @@ def levels_told(items: Sequence[Item]) -> list[Array]:
 def at_level(numbers: Mapping[str, float], level: float) -> dict[str, float]:
     """Return the evidence of a cause with its shares in units of a level, that of labelled robots or a worse one.
 
-    Whose law the rest follows is no matter of a level: `lawful` asks that once.
+    A level is a share of what all laws of the gap do: bent by L they leave L / (1 + L) of it. Whose law the rest
+    follows is no matter of a level: `lawful` asks that once.
     """
-    worse = max(1.0, level / USUAL)
-    return {name: x / worse if name in SHARES else x for name, x in numbers.items() if name != "law"}
+    laws = max(1.0 - max(numbers["left"], 0.0) * numbers.get("part", 1.0), LEAST_SHARE)
+    unit = laws * max(1.0, level / USUAL)
+    return {name: x / unit if name in SHARES else x for name, x in numbers.items() if name != "law"}
 
 
 def lawful(numbers: Mapping[str, float]) -> float:

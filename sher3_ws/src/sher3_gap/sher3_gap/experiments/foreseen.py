@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from functools import partial
+from functools import cache, partial
 
 import numpy as np
+from sher3_description import Robot
 from sher3_description.contract import REFERENCE_TEMPERATURE
 from sher3_diagnosis.channel import AT_TIP, Floors
 from sher3_diagnosis.fit.term import Term
@@ -15,10 +16,14 @@ from sher3_diagnosis.fit.whitened import Whitened
 from sher3_diagnosis.machine import Rehearsal
 
 from sher3_gap.case.loading import signals_of
-from sher3_gap.evidence import SherEvidence, gather, tolerated
+from sher3_gap.evidence import SherEvidence, tolerated
 from sher3_gap.excitation import catalogue, excite
 from sher3_gap.experiments.rehearsal import rehearse
 from sher3_gap.experiments.separation import floors_of
+from sher3_gap.signals import RunSignals
+from sher3_gap.stages.floors import resolution_floors
+from sher3_gap.stages.geometry import Geometry
+from sher3_gap.stages.residuals import all_residuals
 from sher3_gap.stages.view import SherView
 
 APART = ("p1", "p2")
@@ -36,21 +41,23 @@ def foreseen(evidence: SherEvidence) -> Iterator[Rehearsal]:
     """Yield each excitation of the standard set, twice in each of two postures, with the floors of a case.
 
     First as the case was recorded; then with known weights or with the tip tracked, where it had none; then with the
-    robot warmed, before that the recorded excitations once more.
+    robot warmed (which moves no nominal robot), before that the recorded excitations once more.
     """
-    floor = floors_of(evidence)
+    floor, robot = floors_of(evidence), evidence.robot
     loads = any(run.payload for run in evidence.runs)
     names = [n for n in catalogue() if n != "task" and (loads or n != "loads")]
     usual = temperature_of(evidence)
-    ways = {"": (names, usual)}
-    ways |= {} if loads else {LOADED: (["loads"], usual)}
-    ways |= {} if any(c.stage in AT_TIP for c in floor) else {TRACKED: (names, usual)}
-    ways |= {WARMED: (names, usual + WARMER)}
-    for added, (tried, temperature) in ways.items():
+    at_tip = {c: x for c, x in resolution_floors(robot, robot.control_period).items() if c.stage in AT_TIP}
+    ways = {"": (names, usual, floor)}
+    ways |= {} if loads else {LOADED: (["loads"], usual, floor)}
+    ways |= {} if at_tip.keys() & floor.keys() else {TRACKED: (names, usual, at_tip | floor)}
+    ways |= {WARMED: (names, usual + WARMER, floor)}
+    made = cache(partial(_nominal, robot))
+    for added, (tried, temperature, known) in ways.items():
         if added == WARMED:
             yield Rehearsal(SAME, SAME_WHY, WARMED, _warmed(evidence, floor, temperature), elsewhere=False)
         for name in tried:
-            data = _runs(name, evidence, floor, temperature, added == TRACKED)
+            data = _seen([_at(temperature, run) for run in made(name)], robot, known)
             yield Rehearsal(name, WHY, added, data, as_built=partial(_as_built, evidence, data))
 
 
@@ -70,18 +77,25 @@ def _warmed(evidence: SherEvidence, floor: Floors, temperature: float) -> Whiten
     """Return the first run of each recorded excitation at another temperature."""
     first = [evidence.excitations.index(name) for name in dict.fromkeys(evidence.excitations)]
     geometry = evidence.view(0).geometry
-    runs = [replace(evidence.runs[r], temperature=np.full(evidence.runs[r].ticks, temperature)) for r in first]
-    views = [SherView(run, evidence.robot, geometry) for run in runs]
+    views = [SherView(_at(temperature, evidence.runs[r]), evidence.robot, geometry) for r in first]
     told = [{c: x for c, x in evidence.data.residuals[r].items() if c in floor} for r in first]
-    return Whitened(views, told, [floor] * len(runs))
+    return Whitened(views, told, [floor] * len(first))
 
 
-def _runs(name: str, evidence: SherEvidence, floor: Floors, temperature: float, tracked: bool) -> Whitened:
-    """Return the runs of an experiment without any cause; those of a new sensor have the floor of the nominal robot."""
-    asked = [(excite(name, evidence.robot, posture=p), 0) for p in APART]
-    made = rehearse(evidence.robot, asked, scatter=None, temperature=temperature)
-    runs = [signals_of(run, evidence.robot, f"{name} {i}") for i, run in enumerate(made)]
-    seen = gather(runs, evidence.robot)
-    known = floors_of(seen) | floor if tracked else floor
-    told = [{c: x for c, x in residuals.items() if c in known} for residuals in seen.data.residuals]
-    return Whitened(seen.views * REPEATS, told * REPEATS, [known] * len(runs) * REPEATS)
+def _at(temperature: float, run: RunSignals) -> RunSignals:
+    """Return a run at a temperature, deg C."""
+    return replace(run, temperature=np.full(run.ticks, temperature))
+
+
+def _nominal(robot: Robot, name: str) -> list[RunSignals]:
+    """Return the runs of an experiment without any cause."""
+    asked = [(excite(name, robot, posture=p), 0) for p in APART]
+    return [signals_of(run, robot, f"{name} {i}") for i, run in enumerate(rehearse(robot, asked, scatter=None))]
+
+
+def _seen(runs: Sequence[RunSignals], robot: Robot, floor: Floors) -> Whitened:
+    """Return runs that were never made, `REPEATS` times each, at the channels of a floor; only when they count."""
+    geometry = Geometry(robot)
+    views = [SherView(run, robot, geometry) for run in runs]
+    told = [{c: x for c, x in all_residuals(run, robot, geometry).items() if c in floor} for run in runs]
+    return Whitened(views * REPEATS, told * REPEATS, [floor] * len(runs) * REPEATS)
