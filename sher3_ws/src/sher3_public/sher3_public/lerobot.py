@@ -7,6 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+from sher3_effects import computed
 from sher3_machines.drafting.guesses import reach
 from sher3_machines.intake.readers.lerobot import DataSet, read_data_set
 from sher3_machines.intake.units import UNITS
@@ -15,8 +16,7 @@ from sher3_public.answer import Answer
 from sher3_public.arrays.stating import Stated
 from sher3_public.cases import case_of_arrays, case_of_tables
 from sher3_public.errors import InputError
-from sher3_public.missed import EFFECT as MISSED
-from sher3_public.missed import with_missed
+from sher3_public.missed import SHARE, with_missed
 from sher3_public.models import source_of
 from sher3_public.records import Array, Arrays
 
@@ -75,10 +75,11 @@ def from_lerobot(
         notes.append(f"{len(runs)} of the data set's {found.total} episodes are in its folder")
     if found.nominal:
         notes.append(f"stamps are the frame's number over {found.rate:g} Hz: they hide what the control loop missed")
+    missed = computed(SHARE).id
     answer = Answer.of(
-        replace(case, guesses=[*guesses, *case.guesses], notes=notes), [x for x in without if x != MISSED]
+        replace(case, guesses=[*guesses, *case.guesses], notes=notes), [x for x in without if x != missed]
     )
-    if MISSED in without:
+    if missed in without:
         return answer
     verdict = with_missed(answer.verdict, [tables[CLOCK] for tables in runs])
     return replace(answer, diagnosis=replace(answer.diagnosis, verdict=verdict))

@@ -6,12 +6,14 @@ from collections.abc import Sequence
 
 import numpy as np
 from sher3_diagnosis.verdict import Cause, Interval, Parameter, Verdict, Where
+from sher3_effects import computed
 from sher3_machines.intake.mending.stamps import missing_at
 
 from sher3_public.records import Array
 
-EFFECT, FAMILY, STAGE, PLACE = "dropped_commands", "timing", "transport", "all"
-"""Of the cause: a loop that misses a period sends nothing, and the drives hold what they were told before."""
+SHARE, PLACE = "probability", "all"
+"""What is computed of the cause, and where it acts: a loop that misses a period sends nothing to any joint, and the
+drives hold what they were told before."""
 
 
 def with_missed(verdict: Verdict, clocks: Sequence[Array]) -> Verdict:
@@ -22,18 +24,27 @@ def with_missed(verdict: Verdict, clocks: Sequence[Array]) -> Verdict:
     missing = np.concatenate([missing_at(clock) for clock in clocks])
     if not missing.any():
         return verdict
-    period = float(np.median(np.concatenate([np.diff(clock) for clock in clocks])))
+    page, period = computed(SHARE), float(np.median(np.concatenate([np.diff(clock) for clock in clocks])))
     uneven = np.concatenate([np.diff(clock) for clock in clocks]) - period * (1 + missing)
     late, floor = (float(np.sqrt(np.mean(x**2))) for x in (period * missing, uneven))
-    longest = period * int(missing.max())
-    regime = f"at {np.count_nonzero(missing)} of {len(missing)} steps"
-    where = Where(
-        stage=STAGE, actuator=PLACE, gap=late, floor=floor, unit="s", regime=regime, confidence=1.0
-    )  # fmt: skip
     share = float(missing.sum() / (missing.sum() + len(missing)))
-    sizes = {"probability": Parameter(value=share, unit="1"), "longest": Parameter(value=longest, unit="s")}
+    longest = Parameter(value=period * int(missing.max()), unit="s")
+    where = Where(
+        stage=page.stage,
+        actuator=PLACE,
+        gap=late,
+        floor=floor,
+        unit=longest.unit,
+        regime=f"at {np.count_nonzero(missing)} of {len(missing)} steps",
+        confidence=1.0,
+    )
     cause = Cause(
-        effect=EFFECT, family=FAMILY, stage=STAGE, actuator=PLACE, parameters=sizes, closure=Interval(value=1.0)
-    )  # fmt: skip
+        effect=page.id,
+        family=page.family,
+        stage=page.stage,
+        actuator=PLACE,
+        parameters={SHARE: Parameter(value=share, unit="1"), "longest": longest},
+        closure=Interval(value=1.0),
+    )
     known = {"where": [*verdict.where, where], "causes": [*verdict.causes, cause]}
     return verdict.model_copy(update=known if verdict.where else {**known, "status": "attributed"})
