@@ -94,7 +94,7 @@ class MotorDriverSettings(_Part):
         stall_limit: longest hold-up of the driver's loop while the drives are enabled, s.
         encoder_distance, encoder_angle: limit of the difference of motor and load encoder without its slow part, m and
             rad. On the nominal robot it is 1 um and 0.04 mrad.
-        encoder_latency: time for which that limit may be exceeded, s.
+        encoder_latency: time for which that limit may be exceeded, s; a tick beyond twice the limit counts twice.
         encoder_memory: time constant with which the slow part is followed, s.
         encoder_drift_distance, encoder_drift_angle: how far they may part since enabling, the slow part too, while the
             axis stays where it is, m and rad.

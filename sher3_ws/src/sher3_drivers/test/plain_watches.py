@@ -37,7 +37,8 @@ class PlainAxis:
         gap = motor - load
         self.gap = gap - self.slow
         self.slow += limits.forget_apart * self.gap
-        self.gap_ticks = self.gap_ticks + 1 if abs(self.gap) > limits.apart else 0
+        far = min(2, int(abs(self.gap) / limits.apart))
+        self.gap_ticks = self.gap_ticks + far if far else 0
         self.low, self.high = min(self.low, motor), max(self.high, motor)
         self.drift_limit = limits.drift + limits.drift_share * (self.high - self.low)
         self.drift_ticks = self.drift_ticks + 1 if abs(gap - self.start) > self.drift_limit else 0

@@ -84,12 +84,13 @@ def slip(rig, name, field, by):
 
 @pytest.mark.parametrize("name", ACTUATORS)
 @pytest.mark.parametrize("field", ["load_position", "motor_position"])
-def test_encoders_that_part_stop_the_robot_and_take_its_power(rig, name, field):
+@pytest.mark.parametrize(("limits", "ticks"), [(1.5, 5), (2.5, 3)])
+def test_encoders_that_part_stop_the_robot_and_take_its_power(rig, name, field, limits, ticks):
+    """10 ms; by twice their limit and more, 6 ms."""
     for _ in range(20):
         rig.tick(SLOW)
-    slip(rig, name, field, 1e-3 if name == "roll" else 2e-5)
-    latency = rig.settings.encoder_latency / rig.settings.period
-    assert latency <= ticks_to_stop(rig) <= latency + 1
+    slip(rig, name, field, limits * (rig.settings.encoder_angle if name == "roll" else rig.settings.encoder_distance))
+    assert ticks <= ticks_to_stop(rig) <= ticks + 1
     stop = rig.driver.stop
     assert stop.code is Reason.ENCODERS_DISAGREE and stop.first.text.startswith(f"{name}: encoders")
     assert ("load side" if field == "load_position" else "motor encoder") in stop.first.text

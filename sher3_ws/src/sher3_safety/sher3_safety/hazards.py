@@ -97,7 +97,7 @@ HAZARDS = (
         (f"{_DRIVERS}/test_watches.py",),
         ("encoder wrong, coupling slips", "encoder frozen"),
         "both encoders wrong alike by less than the force explains; axes that creep behind encoders that drift, each "
-        "within its own limit: 28 um near tissue (`sher3 safety search`); a slip behind the load encoder without a "
+        "within its own limit: 36 um near tissue (`sher3 safety search`); a slip behind the load encoder without a "
         "tracker; a drive whose commands and both positions have one wrong scale or sign, as by a description that is "
         "wrong alike: on 0.4 mm 9 um with 1.02, 47 with 1.1, 948 with the other sign (`python bench/attacks.py`), "
         "since its effort in that motion, 0.2 N for 30 ms, tells mass and sense of what it moves to 25 % along "

@@ -25,6 +25,8 @@ from sher3_drivers.watches.trips import Trip
 
 _ROUNDING = 1e-9
 """Slack of a quotient before it is rounded up to whole ticks: 10 ms over 2 ms must be five of them, not six."""
+FARTHEST = 2
+"""Ticks that one counts for at most in which encoders are apart by as many limits: healthy ones come to 14 % of one."""
 AGREES, LOAD_FROZEN, MOTOR_FROZEN, APART, ASTRAY = range(5)
 """What there is to say of an axis in a tick."""
 
@@ -159,7 +161,8 @@ def _part(axis: Any, gap: float) -> None:
     """Take the newest difference of the encoders apart into its slow part and the rest."""
     axis["gap"] = fast = gap - axis["slow_gap"]
     axis["slow_gap"] += axis["forget_apart"] * fast
-    axis["gap_ticks"] = axis["gap_ticks"] + 1 if abs(fast) > axis["apart"] else 0
+    far = min(FARTHEST, int(abs(fast) / axis["apart"]))
+    axis["gap_ticks"] = axis["gap_ticks"] + far if far else 0
     axis["low"], axis["high"] = min(axis["low"], axis["motor"]), max(axis["high"], axis["motor"])
     axis["drift_limit"] = axis["drift"] + axis["drift_share"] * (axis["high"] - axis["low"])
     axis["drift_ticks"] = axis["drift_ticks"] + 1 if abs(gap - axis["gap_at_start"]) > axis["drift_limit"] else 0
