@@ -29,6 +29,9 @@ _FREE_RUN_PERIODS = 5
 """Periods without SYNC after which the plant goes on by itself; fewer are a host that is late."""
 _MOST_FREE_STEPS = 1000
 """Periods made up for in one call at most: a process that was suspended for longer does not hang in the past."""
+_MAKING_UP = 50_000_000
+"""Time [ns] that one call may take to make up for periods: 250 of them on an idle computer. Where other work makes a
+step as long as its period, the call would never end, and neither SYNC nor request for a fault be answered."""
 _BATCHES = 64
 """Batches of frames taken in by one `serve` or `poll` at most."""
 
@@ -235,17 +238,17 @@ class MockDriveBus:
         silent = now - self._stepped_at
         if self.ticks and silent >= _FREE_RUN_PERIODS * self._period_ns:
             # The last period stays for the SYNC that may come at this very time.
-            for left in range(min(silent // self._period_ns, _MOST_FREE_STEPS) - 1, 0, -1):
-                self.step_end = self._stepped_at = now - left * self._period_ns
-                self._free_step(now)
+            steps = min(silent // self._period_ns, _MOST_FREE_STEPS) - 1
+            self._free_steps(now - steps * self._period_ns, steps, now)
         for drive in self._in_order:
             if now >= drive.due:
                 drive.watch(now)
 
     def poll(self) -> None:
-        """Handle every frame that waits, as `serve` does."""
+        """Handle every frame that waits, as `serve` does; what takes too long is left to the next call."""
+        begin = self._clock()
         for _ in range(_BATCHES):
-            if not self.serve(0.0):
+            if not self.serve(0.0) or self._clock() - begin > _MAKING_UP:
                 return
 
     def _synced(self, now: int) -> bool:
@@ -279,17 +282,20 @@ class MockDriveBus:
         if not self.ticks or abs(now - self._stepped_at) > 1000 * self._period_ns:
             self._stepped_at = now - self._period_ns
         late = round((now - self._stepped_at) / self._period_ns) - 1
-        for _ in range(late):
-            self._stepped_at += self._period_ns
-            self.step_end = self._stepped_at
-            self._free_step(now)
+        self._free_steps(self._stepped_at + self._period_ns, late, now)
         return late > 0
 
-    def _free_step(self, now: int) -> None:
-        for drive in self.drives.values():
-            drive.check_host(now)
-        self._plant_step()
-        self.free_steps += 1
+    def _free_steps(self, first: int, count: int, now: int) -> None:
+        """Make steps without SYNC, of which the first ends at `first` [ns]; leave out what would take too long."""
+        for end in range(first, first + count * self._period_ns, self._period_ns):
+            for drive in self._in_order:
+                drive.check_host(now)
+            self.step_end = self._stepped_at = end
+            self._plant_step()
+            self.free_steps += 1
+            if self._clock() - now > _MAKING_UP:
+                self._stepped_at = first + (count - 1) * self._period_ns
+                return
 
     def _plant_step(self) -> list[bytes]:
         """Step the plant with the drives' demands; return the TPDOs of every drive."""
