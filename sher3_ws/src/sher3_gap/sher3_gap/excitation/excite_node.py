@@ -142,11 +142,7 @@ class _Turns:
     count: int = 0
 
     def play(self, excitation: Excitation, repeat: int) -> Run:
-        """Return the first of `TRIES` recordings that lost few ticks, else the one that lost fewest.
-
-        Raises:
-            PlayError: each lost more than `LOST_SHARE` of its ticks.
-        """
+        """Return the first of `TRIES` recordings that lost few ticks, else the best; PlayError where all lost many."""
         best: tuple[float, Run] | None = None
         for _ in range(TRIES):
             run = self._once(excitation, repeat)

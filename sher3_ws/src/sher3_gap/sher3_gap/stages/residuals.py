@@ -62,10 +62,7 @@ def drive_residual(run: RunSignals, robot: Robot, demand: Demand | None = None) 
 
 
 def centred(x: Array, ok: np.ndarray, pieces: np.ndarray) -> Residual:
-    """Return the residual (n, 1) of x (n,) less its mean over the valid samples `ok` (n,) of each piece.
-
-    Pieces of fewer than `SHORT` valid samples do not count. `pieces` (n,) numbers the pieces of a run.
-    """
+    """Return the residual (n, 1) of x (n,) less its mean over each piece; one of few valid samples does not count."""
     out, ok = x - x[ok].mean() if ok.any() else x.copy(), ok.copy()
     for piece in np.unique(pieces) if pieces[-1] else ():
         mine = (pieces == piece) & ok

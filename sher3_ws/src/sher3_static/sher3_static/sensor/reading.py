@@ -153,12 +153,7 @@ class Hung(NamedTuple):
 
 
 def fit_of(wrench: Array, turn: Array) -> Hung:
-    """Return the load in the frame in which readings fit best; in the stated one where that is as good.
-
-    Args:
-        wrench: readings (g, 6), N and N m.
-        turn: of the sensor in the base (g, 3, 3).
-    """
+    """Return the load in the frame in which readings (g, 6) fit best; in the stated one where that is as good."""
     tried = [(frame, np.eye(3)) for frame in frames()]
     view = TurnedView(np.zeros(len(wrench)), wrench, turn, 0.0, np.zeros(3), True)
     tried += [(f, Rotation.from_rotvec(view.turn(k)).as_matrix()) for k, f in enumerate(frames())]

@@ -41,10 +41,7 @@ def read_lists(path: Path) -> dict[str, Array]:
     """Return named lists of a JSON file; objects nest as `name/key`, a list of objects is a table.
 
     A list of objects at the top is a table too, whose columns have the keys' names. The answer of an EPICS archiver is
-    a table for each of its channels.
-
-    Raises:
-        ValueError: the top level is neither an object nor a list.
+    a table for each of its channels. Raises ValueError where the top level is neither an object nor a list.
     """
     data = read_json(path, MAX_TEXT_BYTES)
     if is_archive(data):
