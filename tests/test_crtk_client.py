@@ -16,6 +16,7 @@ from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from robot_rig import ROBOT, RobotRig
 from sensor_msgs.msg import JointState
+from sher3_bags.recording.live import recorded
 from sher3_runtime import Graph
 from std_msgs.msg import String
 
@@ -57,12 +58,13 @@ class CrtkClient(Node):
 
 
 @pytest.fixture
-def arm():
+def arm(bag_folder):
     with Graph(period=ROBOT.control_period) as graph:
         RobotRig(graph, robot=ROBOT)
-        client = graph.add(CrtkClient)
-        graph.step(100)
-        yield graph, client
+        with recorded(graph, bag_folder.name, robot=ROBOT):
+            client = graph.add(CrtkClient)
+            graph.step(100)
+            yield graph, client
 
 
 def enabled(graph, client):
