@@ -70,18 +70,19 @@ def recording() -> dict[int, list[tuple[str, bytes]]]:
 
 
 @pytest.mark.parametrize("only", ["", "servo_jv", "servo_cv", "force/measured_cf", "supervisor/heartbeat"])
-def test_a_recording_that_is_played_onto_a_robot_at_rest_moves_nothing(recording, only):
+def test_a_recording_that_is_played_onto_a_robot_at_rest_moves_nothing(recording, only, bag_folder):
     messages = {tick: [m for m in sent if not only or m[0] == f"/sher3/{only}"] for tick, sent in recording.items()}
     with Graph(period=ROBOT.control_period, middleware=False) as graph:
         operator, rig = graph.add(OperatorNode), RobotRig(graph)
-        graph.step(60)
-        operator.command("enable")
-        graph.step(100)
-        player, tips = graph.add(Player, messages), []
-        for _ in range(max(recording) + 50):
-            player.play()
-            graph.step()
-            tips.append(rig.plant.plant.true_tip[1])
+        with recorded(graph, bag_folder.name, robot=ROBOT):
+            graph.step(60)
+            operator.command("enable")
+            graph.step(100)
+            player, tips = graph.add(Player, messages), []
+            for _ in range(max(recording) + 50):
+                player.play()
+                graph.step()
+                tips.append(rig.plant.plant.true_tip[1])
     way = np.linalg.norm(np.array(tips) - tips[0], axis=1).max()
     assert sum(map(len, messages.values())) > 50
     assert way < REST, f"{way * 1e6:.1f} um"
