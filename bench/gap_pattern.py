@@ -15,7 +15,7 @@ from typing import Any
 
 from sher3_challenge.cases.builder import Request, build_case
 from sher3_description import load_robot
-from sher3_diagnosis.attribute.steadiness import steadiness_of
+from sher3_diagnosis.attribute.constancy import constancy_of
 from sher3_diagnosis.localise.pattern import pattern_of
 from sher3_gap.case.loading import load_case
 from sher3_gap.sher import diagnose_runs
@@ -37,7 +37,7 @@ def measure(seed: int) -> Iterator[dict[str, Any]]:
         found = diagnose_runs(runs, robot, without).findings[0]
         for i, term in enumerate(found.attribution.fit.terms):
             pattern = pattern_of(found.evidence, found.attribution.fit, i)
-            constancy = steadiness_of(found.evidence, found.attribution.fit, i)
+            constancy = constancy_of(found.evidence, found.attribution.fit, i)
             true = term.effect.id in there and truth["kind"] != "outside"
             yield {"seed": seed, "cause": term.effect.id, "true": true, "without": without} | {
                 "agreement": pattern.agreement,

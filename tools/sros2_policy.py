@@ -19,7 +19,7 @@ Tables = dict[str, tuple[set[str], set[str]]]
 def robot_nodes() -> Tables:
     """Return the topics each node of the robot publishes and hears; the recorder hears everything."""
     from sher3_bringup.stepped_robot import SteppedRobot
-    from sher3_bringup.terminal.told import SOURCES
+    from sher3_bringup.terminal.status_news import SOURCES
 
     with Graph() as graph:
         SteppedRobot(graph)

@@ -39,8 +39,8 @@ def provenance(robot: Robot | None = None, parameters: Mapping[str, Any] | None 
 @cache
 def _versions() -> dict[str, str]:
     """Return the version of every installed wheel, read once in a process: there are hundreds of them."""
-    told = (distribution.metadata for distribution in distributions())
-    return dict(sorted((one["Name"], one["Version"]) for one in told if one["Name"]))
+    packages = (distribution.metadata for distribution in distributions())
+    return dict(sorted((one["Name"], one["Version"]) for one in packages if one["Name"]))
 
 
 @cache

@@ -15,7 +15,7 @@ from sher3_bringup.surgeon.keyboard import FORCE_LIMIT, HELP, KEYS, TORQUE_LIMIT
 from sher3_bringup.surgeon.panel import panel_lines
 from sher3_bringup.surgeon.script import demo_script, load_script
 from sher3_bringup.surgeon.teleop import is_over
-from sher3_bringup.terminal.told import Told
+from sher3_bringup.terminal.status_news import StatusNews
 from sher3_common import FileError
 from sher3_common.samples import JointSample, PoseSample, TextSample, WrenchSample
 from sher3_view.live.snapshot import Snapshot
@@ -163,7 +163,7 @@ def test_a_spacemouse_is_hand_and_foot(tmp_path):
 
 
 def test_a_script_ends_early_where_no_robot_is_heard():
-    script, told = load_script(demo_script()), Told()
+    script, told = load_script(demo_script()), StatusNews()
     assert [is_over(script, told, elapsed) for elapsed in (0.0, 4.9, 5.0)] == [False, False, True]
     told.hear("supervisor/status", {"state": "DISABLED", "since": 0, "reason": "start"})
     assert [is_over(script, told, elapsed) for elapsed in (5.0, script.duration)] == [False, True]

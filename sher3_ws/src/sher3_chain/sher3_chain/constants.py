@@ -14,8 +14,8 @@ import numpy as np
 from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.effect import Effect, Shape, Signature
 from sher3_diagnosis.fit.fitting import Term, make_term
+from sher3_diagnosis.fit.standardised import Standardised
 from sher3_diagnosis.fit.tolerance import NUISANCE, SIGMAS
-from sher3_diagnosis.fit.whitened import Whitened
 
 ZERO, INTEGRAL = "zero_of_the_encoders", "start_of_the_integral"
 """Ids of the two constants."""
@@ -44,12 +44,12 @@ class ConstantOfRecord(Effect):
         return Signature({Channel(self.stage, site): columns})
 
 
-def constants(data: Whitened, name: str, channels: Sequence[Channel]) -> tuple[Term, ...]:
+def constants(data: Standardised, name: str, channels: Sequence[Channel]) -> tuple[Term, ...]:
     """Return a term for each channel that was recorded, with one constant for each record."""
     return tuple(_constant(data, name, c) for c in channels if any(c in target for target in data.target))
 
 
-def _constant(data: Whitened, name: str, channel: Channel) -> Term:
+def _constant(data: Standardised, name: str, channel: Channel) -> Term:
     records = list(dict.fromkeys(id(v) for v, x in zip(data.views, data.target, strict=True) if channel in x))
     size = max(float(np.abs(x[channel].values[x[channel].ok]).max()) for x in data.residuals if channel in x)
     effect = ConstantOfRecord(name, channel.stage, records, max(size, np.finfo(float).tiny))

@@ -41,14 +41,14 @@ class Residual:
         free_mean: share of each run's mean that is not the machine's and is taken off before anything is compared.
             1 where the start of an integrator is not recorded. A share below 1 is the quasi-demeaning of a random
             intercept: two encoders' zeros differ from run to run, and the share that stays weighs that spread.
-        told: (g, d, d) what each sample tells of its components, where a part of the input is unknown: a projection
-            that takes the unknown part off. None where all of every sample counts.
+        determined: (g, d, d) what each sample tells of its components, where a part of the input is unknown: a
+            projection that takes the unknown part off. None where all of every sample counts.
     """
 
     values: Array
     ok: Mask
     free_mean: float = 0.0
-    told: Array | None = None
+    determined: Array | None = None
 
     def rms(self) -> Array:
         """Root mean square over the samples that count, (d,)."""
@@ -63,20 +63,20 @@ class Residual:
             values: at the samples of a mask.
             at: the mask, as long as the shortest run compared; default the samples that count.
         """
-        if self.told is not None:
+        if self.determined is not None:
             at = self.ok if at is None else at
-            values = np.einsum("gij,gj...->gi...", self.told[: len(at)][at], values)
+            values = np.einsum("gij,gj...->gi...", self.determined[: len(at)][at], values)
         return self.centred(values)
 
     def centred(self, values: Array) -> Array:
         """Subtract the free share of the mean from (n, ...) values of one run."""
         return values - self.free_mean * values.mean(axis=0) if self.free_mean else values
 
-    def wholly_told(self) -> Residual:
+    def wholly_determined(self) -> Residual:
         """Return the residual with only those samples that determine all of their components."""
-        if self.told is None:
+        if self.determined is None:
             return self
-        whole = np.all(self.told == np.eye(self.values.shape[1]), axis=(1, 2))
+        whole = np.all(self.determined == np.eye(self.values.shape[1]), axis=(1, 2))
         return Residual(self.values, self.ok & whole, self.free_mean)
 
     @property

@@ -118,7 +118,7 @@ class Effect:
         choices: parameter of `discrete` -> value -> what it means, in a word.
         bounds: parameter -> smallest and largest value that is physically possible.
         above: what its first coefficient must exceed: a friction resists, a gain keeps its sign.
-        told_by: parameters that must differ from zero for the effect to be told from a simpler one that it extends.
+        extends_by: parameters that must differ from zero for the effect to be told from a simpler one that it extends.
         siblings: effect id -> what tells it from this one.
         extends: ids of simpler effects that this one contains; it must explain markedly more than they do.
         finer: shape value -> factors by which the best value is multiplied in the finer search.
@@ -137,8 +137,8 @@ class Effect:
             effects of one joint apart while its drive gain is not known.
         indistinct: ids of effects that give the same readings where the force was not recorded.
         of_recorder: whether only a recorder makes it: its law is exact, and what a simulator logs, it knows at once.
-        told_by_travel: share of what it explains by which it differs, over the recorded travel, from other forces that
-            follow the position; 0 for an effect that is none.
+        parted_by_travel: share of what it explains by which it differs, over the recorded travel, from other forces
+            that follow the position; 0 for an effect that is none.
         settles: whether its parameters are of sliding alone, so that samples at which it rests tell nothing of them.
         best: the excitation that shows it best.
         leaves_out: what a real machine adds to the idealised law, in words. Empty for a law of geometry, mechanics or
@@ -162,7 +162,7 @@ class Effect:
     choices: ClassVar[Mapping[str, Mapping[float, str]]] = {}
     bounds: ClassVar[Mapping[str, tuple[float, float]]] = {}
     above: ClassVar[float] = -math.inf
-    told_by: ClassVar[tuple[str, ...]] = ()
+    extends_by: ClassVar[tuple[str, ...]] = ()
     siblings: ClassVar[Mapping[str, str]] = {}
     extends: ClassVar[tuple[str, ...]] = ()
     finer: ClassVar[Mapping[str, tuple[float, ...]]] = {}
@@ -178,7 +178,7 @@ class Effect:
     about: ClassVar[tuple[str, ...]] = ()
     scales: ClassVar[str] = ""
     indistinct: ClassVar[tuple[str, ...]] = ()
-    told_by_travel: ClassVar[float] = 0.0
+    parted_by_travel: ClassVar[float] = 0.0
     settles: ClassVar[bool] = False
     best: ClassVar[Best]
     leaves_out: ClassVar[str] = ""

@@ -15,7 +15,7 @@ from typing import NamedTuple, Protocol
 from sher3_diagnosis.channel import Array, Channel, Floors, Mask
 from sher3_diagnosis.effect import ROTARY
 from sher3_diagnosis.fit.fitting import Fit, Term, fit
-from sher3_diagnosis.fit.whitened import Whitened
+from sher3_diagnosis.fit.standardised import Standardised
 
 TURNS = 3
 """First component of a pose or a wrench that is a rotation or a torque."""
@@ -77,7 +77,7 @@ class Evidence:
 
     Attributes:
         excitations: per run, the name of its excitation; runs of one name are repeats.
-        data: residuals and floors, whitened.
+        data: residuals and floors, standardised.
         units: channel -> SI unit of its first components; the last three of six turn: rad for m, N*m for N.
         places: kind of place -> the sites that are one; effects say on which they may sit.
         rotary: sites that turn.
@@ -86,7 +86,7 @@ class Evidence:
     """
 
     excitations: Sequence[str]
-    data: Whitened
+    data: Standardised
     units: Mapping[Channel, str]
     places: Mapping[str, Sequence[str]]
     rotary: frozenset[str] = frozenset()
@@ -143,7 +143,7 @@ class Evidence:
         return kinds[component // TURNS] + "xyz"[component % TURNS]
 
     def samples(self, channel: Channel) -> int:
-        """Return the whitened samples of a channel over all runs: its loss at the floor."""
+        """Return the standardised samples of a channel over all runs: its loss at the floor."""
         return sum(n for (_, c), n in self.data.samples.items() if c == channel)
 
     def excess(self, channel: Channel, after: Fit | None = None) -> float:

@@ -22,9 +22,9 @@ from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.effect import Effect
 from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.finding import ExactFinding, Finding, Findings
+from sher3_diagnosis.fit.standardised import Standardised
 from sher3_diagnosis.fit.term import Term
 from sher3_diagnosis.fit.tolerance import within
-from sher3_diagnosis.fit.whitened import Whitened
 from sher3_diagnosis.reporter import Reporter
 from sher3_diagnosis.verdict import Cause, Identified, Interval, Within
 
@@ -50,7 +50,7 @@ class Rehearsal(NamedTuple):
     excitation: str
     purpose: str
     added: str
-    data: Whitened
+    data: Standardised
     elsewhere: bool = True
     as_built: Callable[[], Sequence[Term]] | None = None
 

@@ -162,7 +162,7 @@ CONTINUUM = 0.1
 half-normal one is 0.83; where it is nothing most ticks are on time, and what is late is late for a reason.
 Set by that argument. Measure: `sher3 gap challenge --kinds outside` (demand_slew)."""
 
-EXACT_UNTOLD = 0.005
+EXACT_UNTIMED = 0.005
 """Share of an exact stage's error in ticks whose timing cannot be told. Set on and measured as `SKEW`."""
 
 SAME_GAIN = (1e-3, 0.02)

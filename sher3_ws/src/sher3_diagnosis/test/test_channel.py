@@ -35,7 +35,7 @@ def test_what_was_taken_off_in_part_can_be_put_back_and_what_was_taken_whole_can
 
 def test_a_sample_that_tells_a_part_of_its_components_counts_in_that_part_and_is_left_out_where_all_are_wanted():
     told = np.stack([np.eye(2), np.diag([1.0, 0.0])])
-    residual = Residual(np.array([[1.0, 2.0], [3.0, 4.0]]), np.ones(2, dtype=bool), told=told)
+    residual = Residual(np.array([[1.0, 2.0], [3.0, 4.0]]), np.ones(2, dtype=bool), determined=told)
     assert residual.relieved(residual.values).tolist() == [[1.0, 2.0], [3.0, 0.0]]
     assert residual.relieved(residual.values[1:], np.array([False, True])).tolist() == [[3.0, 0.0]]
-    assert residual.wholly_told().ok.tolist() == [True, False] and residual.wholly_told().told is None
+    assert residual.wholly_determined().ok.tolist() == [True, False] and residual.wholly_determined().determined is None

@@ -5,7 +5,7 @@ import pytest
 from sher3_diagnosis.channel import Channel, Residual
 from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.fit.fitting import fit, make_term
-from sher3_diagnosis.fit.whitened import Whitened
+from sher3_diagnosis.fit.standardised import Standardised
 from sher3_diagnosis.quantify.closure import closure, interval_of, residual_after, zeros_floor
 from sher3_diagnosis.thresholds import PIECES
 from toy import AXIS, OFFSET, ToyRun, evidence_of
@@ -72,7 +72,7 @@ def test_repeats_of_partly_free_residuals_differ_by_their_zeros_too():
     """Means of 0 and 2 with the same form: half the mean square difference is 2."""
     channel = Channel("transmission", "axis")
     residuals = [{channel: Residual(np.full((4, 1), v), np.ones(4, dtype=bool), 0.96)} for v in (0.0, 2.0)]
-    data = Whitened([None] * 2, residuals, [{channel: np.ones(1)}] * 2)
+    data = Standardised([None] * 2, residuals, [{channel: np.ones(1)}] * 2)
     evidence = Evidence(excitations=["a", "a"], data=data, units={channel: "m"}, places={})
     assert zeros_floor(evidence, channel) == pytest.approx(2.0)
     assert zeros_floor(evidence_of(RUNS), AXIS) == 0.0

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from sher3_diagnosis.attribute.steadiness import steadiness_of
+from sher3_diagnosis.attribute.constancy import constancy_of
 from sher3_diagnosis.fit.fitting import fit, make_term
 from toy import OFFSET, ToyRun, evidence_of
 
@@ -10,7 +10,7 @@ from toy import OFFSET, ToyRun, evidence_of
 def constancy(first, second, n=100):
     runs = [ToyRun(e, np.full(n, v), np.zeros(n), np.ones(n)) for e, v in (("a", first), ("b", second))]
     evidence = evidence_of(runs)
-    return steadiness_of(evidence, fit(evidence.data, [make_term(evidence.data, OFFSET, "axis", {})]), 0)
+    return constancy_of(evidence, fit(evidence.data, [make_term(evidence.data, OFFSET, "axis", {})]), 0)
 
 
 def test_the_same_size_everywhere_is_constant():

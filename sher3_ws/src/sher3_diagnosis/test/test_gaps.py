@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from sher3_diagnosis.channel import Channel, Residual
 from sher3_diagnosis.evidence import Evidence
-from sher3_diagnosis.fit.whitened import Whitened
+from sher3_diagnosis.fit.standardised import Standardised
 from sher3_diagnosis.localise.gaps import component_rms, gap_of, localise
 from sher3_diagnosis.thresholds import FLOOR_SCATTER, GROUPED, POOLED, ZERO_COUNTS
 from toy import AXIS, ToyRun, evidence_of
@@ -20,7 +20,7 @@ def run(excitation, values):
 
 def of(channel, per_run, floor, excitations, **facts):
     residuals = [{channel: x} for x in per_run]
-    data = Whitened([None] * len(per_run), residuals, [{channel: np.array(floor)} for _ in per_run])
+    data = Standardised([None] * len(per_run), residuals, [{channel: np.array(floor)} for _ in per_run])
     return Evidence(excitations=excitations, data=data, units={channel: "m"}, places={}, **facts)
 
 
@@ -73,6 +73,6 @@ def test_the_most_significant_gap_comes_first():
     other = Channel("drive", "axis")
     residual = {AXIS: Residual(np.full((4, 1), 2.0), np.ones(4, dtype=bool))}
     residual[other] = Residual(np.full((4, 1), 5.0), np.ones(4, dtype=bool))
-    data = Whitened([None], [residual], [{AXIS: np.ones(1), other: np.ones(1)}])
+    data = Standardised([None], [residual], [{AXIS: np.ones(1), other: np.ones(1)}])
     evidence = Evidence(excitations=["a"], data=data, units={AXIS: "N", other: "N"}, places={})
     assert [g.channel for g in localise(evidence)] == [other, AXIS]

@@ -8,7 +8,7 @@ from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.finding import Candidate, Item
 from sher3_diagnosis.judge.calibration.calibration import in_force
 from sher3_diagnosis.judge.evidence.scales import LEAST_OWN, unexplained
-from sher3_diagnosis.judge.level import LAWFUL, LEVELS, USUAL, at_level, lawful, levels_told
+from sher3_diagnosis.judge.level import LAWFUL, LEVELS, USUAL, at_level, lawful, level_weights
 from sher3_diagnosis.judge.probabilities import judged, judged_together
 from sher3_diagnosis.verdict import Interval
 
@@ -31,11 +31,11 @@ def middle(weights):
 
 
 def test_a_place_alone_tells_no_level():
-    assert levels_told([item("a"), item("a", left=0.01)])[0] == pytest.approx(np.ones(5) / 5)
+    assert level_weights([item("a"), item("a", left=0.01)])[0] == pytest.approx(np.ones(5) / 5)
 
 
 def test_other_places_tell_the_level():
-    well, badly = (levels_told([item("a"), *(item(j, left=left) for j in "bcd")])[0] for left in (0.005, 0.2))
+    well, badly = (level_weights([item("a"), *(item(j, left=left) for j in "bcd")])[0] for left in (0.005, 0.2))
     assert middle(well) < 0.01 and middle(badly) > 0.1
 
 

@@ -74,7 +74,7 @@ def test_a_cause_whose_sizes_hold_zero_has_none():
 
 
 def test_what_tells_a_law_from_a_simpler_one_must_not_hold_zero():
-    effect = Law("law", "spring", "one", told_by=("place",))
+    effect = Law("law", "spring", "one", extends_by=("place",))
     assert of_no_size(Term(effect), np.array([2.0, 4.0]), cause(size=(1.0, 3.0), place=(-1.0, 2.0)))
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from sher3_diagnosis.fit.fitting import fit, make_term
 from sher3_diagnosis.flow import diagnose
-from sher3_diagnosis.judge.experiments.foretold import foretold
+from sher3_diagnosis.judge.experiments.prediction import predicted
 from sher3_diagnosis.machine import Rehearsal
 from toy import DIRECTION, Column, Toy, case, evidence_of, stroke
 
@@ -101,7 +101,7 @@ def test_a_bend_is_a_share_of_the_power_of_the_last_law(alike):
     evidence = evidence_of(alike)
     terms = [make_term(evidence.data, x, "axis", {}) for x in (DIRECTION, WARMTH)]
     found = fit(evidence.data, terms[:1])
-    plain, bent = (foretold(found, terms[:1], evidence.data, level) for level in (0.0, 0.1))
+    plain, bent = (predicted(found, terms[:1], evidence.data, level) for level in (0.0, 0.1))
     straight, off = (np.concatenate([y for run in x for y in run.values()]) for x in (plain, bent))
     assert np.mean((off - straight) ** 2) == pytest.approx(0.1 * np.mean(straight**2), rel=0.3)
 

@@ -9,7 +9,7 @@ from sher3_diagnosis.attribute.rivals import Attribution
 from sher3_diagnosis.channel import Channel, Residual
 from sher3_diagnosis.effect import Signature
 from sher3_diagnosis.fit.fitting import fit, make_term
-from sher3_diagnosis.fit.whitened import Whitened
+from sher3_diagnosis.fit.standardised import Standardised
 from sher3_diagnosis.quantify.parameters import parameters
 from sher3_diagnosis.quantify.polish import polished
 from sher3_diagnosis.thresholds import BEYOND, HIDDEN, MIN_RUNS, MISFIT, NORMAL
@@ -129,7 +129,7 @@ def test_a_channel_that_carries_a_load_tells_it_from_what_another_cannot():
         {AXIS: Residual(r.values[:, None], ok), BEYOND_AXIS: Residual(rng.normal(size=(n, 1)) + 5, ok)} for r in runs
     ]
     one = evidence_of(runs)
-    data = Whitened(one.views, seen, [{AXIS: np.ones(1), BEYOND_AXIS: np.ones(1)} for _ in runs])
+    data = Standardised(one.views, seen, [{AXIS: np.ones(1), BEYOND_AXIS: np.ones(1)} for _ in runs])
     evidence = replace(one, data=data, units={AXIS: "N", BEYOND_AXIS: "N"})
     terms = [make_term(data, effect, "axis", {}) for effect in (Load("load", "load", "one"), OFFSET)]
     size = parameters(evidence, fit(data, terms), 1)["size"]

@@ -9,7 +9,7 @@ import numpy as np
 from sher3_diagnosis.channel import Array, Channel, Residual
 from sher3_diagnosis.effect import Best, Effect, Shape, Signature
 from sher3_diagnosis.evidence import Evidence, Motion
-from sher3_diagnosis.fit.whitened import Whitened
+from sher3_diagnosis.fit.standardised import Standardised
 from sher3_diagnosis.machine import Machine
 
 AXIS = Channel("motor_mechanics", "axis")
@@ -82,7 +82,7 @@ def evidence_of(runs: Sequence[ToyRun], floor: float = 1.0, **facts: object) -> 
     """Return evidence with one floor for all runs."""
     residuals = [{AXIS: Residual(r.values[:, None], np.ones(len(r.values), dtype=bool))} for r in runs]
     floors = [{AXIS: np.array([floor])} for _ in runs]
-    data = Whitened([ToyView(r) for r in runs], residuals, floors)
+    data = Standardised([ToyView(r) for r in runs], residuals, floors)
     given = {"units": {AXIS: "N"}, "places": {"axis": ("axis",)}, **facts}
     return Evidence(excitations=[r.excitation for r in runs], data=data, **given)
 

@@ -136,7 +136,7 @@ class Page(Effect):
         """Return the page with those constants of the axis that it needs; by default the page itself."""
         return self
 
-    def told(self) -> Page:
+    def at_estimate(self) -> Page:
         """Return the page with its computed parameter held, so that nothing is fitted; by default the page itself."""
         return self
 

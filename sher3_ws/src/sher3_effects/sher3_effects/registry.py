@@ -69,11 +69,11 @@ def pages(kind: str, facts: Collection[str] | None = None) -> list[Page]:
     Raises:
         FileError: a file of the user's own cannot be read.
     """
-    found = {e.id: e for e in _pages(os.environ.get(VARIABLE, "")) if kind in e.kinds and _told(e, facts)}
+    found = {e.id: e for e in _pages(os.environ.get(VARIABLE, "")) if kind in e.kinds and _has_its_facts(e, facts)}
     return [found[i] for i in sorted(found)]
 
 
-def _told(page: Page, facts: Collection[str] | None) -> bool:
+def _has_its_facts(page: Page, facts: Collection[str] | None) -> bool:
     """Whether all that a page needs is known."""
     return not ONE_ENCODER & set(page.needs) if facts is None else set(page.needs) <= set(facts)
 

@@ -26,7 +26,7 @@ class NominalAxis(NamedTuple):
         rotary: whether the axis turns.
         load_mass: part of the mass that moves with a second encoder, kg or kg m^2; 0 where it is not known.
         seen: one count of the encoder or its noise, the larger, m or rad; 0 where nothing asks for it.
-        told: whether its effort is what the drive was told, a voltage or a duty, and no force yet.
+        effort_is_demand: whether its effort is what the drive was told, a voltage or a duty, and no force yet.
         follows: gain of the servo whose law stands for an effort that nobody recorded, N/m or N m/rad; 0: another.
         of_step: inertia that a simulator's step adds to what the effort moves, kg or kg m^2: no gain multiplies it.
     """
@@ -41,7 +41,7 @@ class NominalAxis(NamedTuple):
     load_mass: float = 0.0
     rotary: bool = False
     seen: float = 0.0
-    told: bool = False
+    effort_is_demand: bool = False
     follows: float = 0.0
     of_step: float = 0.0
 

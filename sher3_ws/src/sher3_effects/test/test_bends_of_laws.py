@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from sher3_effects.compliance.stiffening import softness, stiffened
-from sher3_effects.compliance.two_slopes import is_told, knees, parts, slopes
+from sher3_effects.compliance.two_slopes import is_shown, knees, parts, slopes
 from sher3_effects.periodic.teeth import orders_of
 from sher3_effects.scale.varying_ratio import gentle, lines, mean_ratio
 
@@ -38,7 +38,7 @@ def test_knees_lie_where_forces_pass_and_not_between_two_loads():
     usual = 1.0 / np.sqrt(3.0)
     assert knees([ramp], {})[0]["knee"] == pytest.approx(0.3 * usual, rel=0.01)
     assert all(shape["knee"] > 1.0 for shape in knees([np.repeat([0.0, 1.0], 100)], {}))
-    assert is_told({"knee": 0.7, "least": 1.0}) and not is_told({"knee": 0.6, "least": 1.0})
+    assert is_shown({"knee": 0.7, "least": 1.0}) and not is_shown({"knee": 0.6, "least": 1.0})
 
 
 def test_a_ratio_that_varies_adds_hats_between_the_ends():

@@ -76,7 +76,10 @@ def test_a_computed_parameter_belongs_to_one_effect():
     names = ["delay", "effort_delay", "limit", "probability", "relative", "sigma", "skew"]
     assert sorted(page.computed for page in every().values() if page.computed) == names
     assert [computed(name).id for name in names[:3]] == ["command_delay", "sensor_delay", "force_saturation"]
-    assert not computed("effort_delay").told().shapes([], "axis") and computed("limit").told().id == "force_saturation"
+    assert (
+        not computed("effort_delay").at_estimate().shapes([], "axis")
+        and computed("limit").at_estimate().id == "force_saturation"
+    )
 
 
 @pytest.mark.parametrize("page", ROBOT_PAGES)

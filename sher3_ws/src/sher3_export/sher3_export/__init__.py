@@ -10,7 +10,7 @@ from sher3_common.faces import lazy
 
 if TYPE_CHECKING:
     from sher3_export.changes import Change as Change
-    from sher3_export.changes import Untold as Untold
+    from sher3_export.changes import NotExpressed as NotExpressed
     from sher3_export.changes import changes_of as changes_of
     from sher3_export.errors import ExportError as ExportError
     from sher3_export.writing import TARGETS as TARGETS

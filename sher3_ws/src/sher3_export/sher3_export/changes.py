@@ -52,7 +52,7 @@ class Change:
 
 
 @dataclass(frozen=True)
-class Untold:
+class NotExpressed:
     """What a target cannot express.
 
     Attributes:
@@ -73,7 +73,9 @@ class Untold:
         return f"{self.effect} on {self.joint}{what}: {self.reason}"
 
 
-def changes_of(causes: Sequence[Cause], joints: Mapping[str, str] | None = None) -> tuple[list[Change], list[Untold]]:
+def changes_of(
+    causes: Sequence[Cause], joints: Mapping[str, str] | None = None
+) -> tuple[list[Change], list[NotExpressed]]:
     """Return the numbers that causes set, constants of a joint or their own, and the causes of which none can be used.
 
     Args:
@@ -81,20 +83,20 @@ def changes_of(causes: Sequence[Cause], joints: Mapping[str, str] | None = None)
         joints: axis of the verdict -> joint of the model, where their names differ.
     """
     changes: list[Change] = []
-    untold: list[Untold] = []
+    left_out: list[NotExpressed] = []
     for cause in causes:
         if cause.condition is not None:
-            untold.append(_whole(cause, joints, f"it acts under {cause.condition} alone; a model has none"))
+            left_out.append(_whole(cause, joints, f"it acts under {cause.condition} alone; a model has none"))
             continue
         own = next((p.unit for p in cause.parameters.values() if p.unit.startswith(NO_FORCE)), None)
         if own is not None:
-            untold.append(_whole(cause, joints, f"it is in {own}: state the gain of the drive, N or N m per unit"))
+            left_out.append(_whole(cause, joints, f"it is in {own}: state the gain of the drive, N or N m per unit"))
             continue
         joint = (joints or {}).get(cause.actuator, cause.actuator)
         known = constants_of(cause)
         known = known if known.keys() & cause.parameters.keys() else {name: name for name in cause.parameters}
         changes += [_change(cause.effect, joint, known[n], p) for n, p in cause.parameters.items() if n in known]
-    return changes, untold
+    return changes, left_out
 
 
 def identified_changes(found: Sequence[Identified], joints: Mapping[str, str] | None = None) -> list[Change]:
@@ -103,8 +105,8 @@ def identified_changes(found: Sequence[Identified], joints: Mapping[str, str] | 
     return [_change(IDENTIFIED, joint, name, p) for joint, x in named for name, p in x.constants.items()]
 
 
-def _whole(cause: Cause, joints: Mapping[str, str] | None, reason: str) -> Untold:
-    return Untold(cause.effect, (joints or {}).get(cause.actuator, cause.actuator), "", None, reason)
+def _whole(cause: Cause, joints: Mapping[str, str] | None, reason: str) -> NotExpressed:
+    return NotExpressed(cause.effect, (joints or {}).get(cause.actuator, cause.actuator), "", None, reason)
 
 
 def constants_of(cause: Cause) -> Mapping[str, str]:

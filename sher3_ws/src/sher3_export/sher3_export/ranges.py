@@ -61,7 +61,7 @@ class Ranges:
         known = list(self.shares) or [1.0] * len(self.worlds)
         return [share / sum(known) for share in known]
 
-    def told(self) -> list[str]:
+    def lines(self) -> list[str]:
         """Return a line for each number of each set of causes, with its range; sets parted by their odds."""
         out = []
         for world, odds in zip(self.worlds, self.probabilities, strict=True):

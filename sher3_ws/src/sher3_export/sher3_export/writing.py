@@ -11,7 +11,7 @@ from sher3_chain.manipulator.description import BEHIND
 from sher3_diagnosis.verdict import Cause, Identified, Verdict
 from sher3_effects.page import CONSTANTS
 
-from sher3_export.changes import Change, Untold, changes_of, identified_changes
+from sher3_export.changes import Change, NotExpressed, changes_of, identified_changes
 from sher3_export.errors import ExportError
 from sher3_export.targets.configuration import Configuration
 from sher3_export.targets.isaac import Isaac, IsaacLab
@@ -40,12 +40,12 @@ class Exported:
     Attributes:
         text: of the model or configuration.
         applied: constants that were written.
-        untold: what the target cannot express.
+        not_expressed: what the target cannot express.
     """
 
     text: str
     applied: Sequence[Change]
-    untold: Sequence[Untold]
+    not_expressed: Sequence[NotExpressed]
 
 
 def export(
@@ -70,7 +70,7 @@ def export(
     """
     motors = travels_of(verdict, motors)
     done, text = put(verdict.causes, target, model, joints, motors, verdict.identified)
-    return replace(done, text=text(remarks(verdict, done.applied, done.untold)))
+    return replace(done, text=text(remarks(verdict, done.applied, done.not_expressed)))
 
 
 def travels_of(verdict: Verdict, motors: Motors | None) -> Motors:
@@ -96,7 +96,7 @@ def put(
     """
     if target not in TARGETS:
         raise ExportError("no such target", value=target, limit=", ".join(TARGETS), remedy="choose one of them")
-    changes, untold = changes_of(causes, joints)
+    changes, not_expressed = changes_of(causes, joints)
     changes += identified_changes(identified, joints)
     writer = opened(TARGETS[target], model)
     applied: list[Change] = []
@@ -105,10 +105,10 @@ def put(
         if reason := writer.apply(change) if travel is None else writer.apply_at_motor(change, travel):
             known = change.constant in CONSTANTS
             constant, value = (change.constant, change.value) if known else ("", None)
-            untold.append(Untold(change.effect, change.joint, constant, value, reason))
+            not_expressed.append(NotExpressed(change.effect, change.joint, constant, value, reason))
         else:
             applied.append(change)
-    return Exported("", applied, list(dict.fromkeys(untold))), writer.text
+    return Exported("", applied, list(dict.fromkeys(not_expressed))), writer.text
 
 
 def opened(kind: type[Target], model: Path | Element | None) -> Target:
@@ -134,10 +134,10 @@ def _root(path: Path, tag: str) -> Element:
     return read_mjcf(path) if tag == Mjcf.root_tag else read_xml(path, tag)
 
 
-def remarks(verdict: Verdict, applied: Sequence[Change], untold: Sequence[Untold]) -> list[str]:
+def remarks(verdict: Verdict, applied: Sequence[Change], not_expressed: Sequence[NotExpressed]) -> list[str]:
     """Return what stands in the comment of a file: what was written, what could not be, and what is not known."""
     rivals = [f"{c.effect} on {c.actuator} may as well be {', '.join(c.rivals)}" for c in verdict.causes if c.rivals]
     lines = [f"Causes of a diagnosis with status {verdict.status}, added to the nominal model.", "Written:"]
     lines += [f"  {change}" for change in applied] or ["  nothing"]
-    lines += ["Not expressed here:", *(f"  {x}" for x in untold)] if untold else []
+    lines += ["Not expressed here:", *(f"  {x}" for x in not_expressed)] if not_expressed else []
     return lines + (["Not told apart:", *(f"  {x}" for x in rivals)] if rivals else [])

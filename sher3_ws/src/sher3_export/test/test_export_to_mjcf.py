@@ -29,7 +29,7 @@ def test_friction_and_damping_add_to_what_default_classes_say():
     done, model = written(cause("coulomb_friction", force=8.0), cause("viscous_friction", extra=40.0))
     assert model.dof_frictionloss[0] == pytest.approx(9.0)
     assert model.dof_damping[0] == pytest.approx(43.0)
-    assert len(done.applied) == 2 and not done.untold
+    assert len(done.applied) == 2 and not done.not_expressed
     assert "a comment of the user's" in done.text and "coulomb_friction on slide" in done.text
 
 
@@ -38,8 +38,11 @@ def test_what_mujoco_cannot_express_is_listed_and_stands_in_the_file():
         cause("coulomb_friction", force=4.0), cause("gear_loss", share=0.1), cause("transmission_ripple", amplitude=1.0)
     )
     assert model.dof_frictionloss[0] == pytest.approx(5.0)
-    assert {(x.effect, x.constant) for x in done.untold} == {("gear_loss", "load_loss"), ("transmission_ripple", "")}
-    assert all(str(x).replace("--", "- -") in done.text for x in done.untold)
+    assert {(x.effect, x.constant) for x in done.not_expressed} == {
+        ("gear_loss", "load_loss"),
+        ("transmission_ripple", ""),
+    }
+    assert all(str(x).replace("--", "- -") in done.text for x in done.not_expressed)
 
 
 def moved(model, control, seconds):
@@ -88,7 +91,7 @@ def test_a_servos_forces_are_scaled_by_its_stiffness():
     done, compiled = written(cause("coulomb_friction", force=0.01, unit="m"), model=model)
     assert compiled.dof_frictionloss[0] == pytest.approx(1.0 + 0.01 * 200.0)
     done, _ = written(cause("coulomb_friction", force=0.01, unit="m"))
-    assert "stiffness" in done.untold[0].reason
+    assert "stiffness" in done.not_expressed[0].reason
 
 
 def test_an_offset_of_the_zero_shifts_the_reading():
@@ -106,7 +109,7 @@ def test_a_spring_beside_the_joint_and_a_payload_on_its_link():
         cause("spring_torque", stiffness=50.0, rest=0.2, unit="N/m"),
         cause("payload_mass", "b", mass=0.5, x=0.1, y=0.0, z=-0.2, unit="kg"),
     )
-    assert not done.untold and sum(model.body_mass) == pytest.approx(2.5)
+    assert not done.not_expressed and sum(model.body_mass) == pytest.approx(2.5)
     assert float(np.ravel(model.jnt_stiffness[0])[0]) == pytest.approx(50.0)
     assert model.qpos_spring[0] == pytest.approx(0.2)
     assert model.body("b_payload").pos == pytest.approx([0.1, 0.0, -0.2])
@@ -116,7 +119,7 @@ def test_another_name_of_the_joint_is_given_or_the_cause_is_listed():
     done, model = written(cause("coulomb_friction", "axis_1", force=8.0), joints={"axis_1": "slide"})
     assert model.dof_frictionloss[0] == pytest.approx(9.0)
     done, model = written(cause("coulomb_friction", "axis_1", force=8.0))
-    assert "slide" in done.untold[0].reason and model.dof_frictionloss[0] == 1.0
+    assert "slide" in done.not_expressed[0].reason and model.dof_frictionloss[0] == 1.0
 
 
 @pytest.mark.parametrize("text", ["<!DOCTYPE a><mujoco/>", "<mujoco", "<robot/>", "\0"])

@@ -27,7 +27,7 @@ def test_identified_inertias_are_written_beside_the_causes(to, written):
     model = parse_xml(given, root) if given else None
     done = export(found_beside(cause("coulomb_friction", "elbow", force=0.5, unit="N*m")), to, model)
     assert [x.effect for x in done.applied].count("identified") == written - 1
-    assert len(done.untold) == 3 - written
+    assert len(done.not_expressed) == 3 - written
     if to == "yaml":
         assert yaml.safe_load(done.text)["joints"]["elbow"]["inertia"][0]["from"] == "identified"
     else:

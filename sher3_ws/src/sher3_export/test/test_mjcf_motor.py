@@ -29,14 +29,14 @@ def given(model, q, v):
 
 def test_a_cogging_takes_no_control_and_is_the_force_that_the_drive_then_needs():
     done, model = written(cause("cogging", amplitude=0.5, periods_per_turn=12.0, phase=0.3))
-    assert not done.untold and model.nu == 1
+    assert not done.not_expressed and model.nu == 1
     for q in (0.0, 0.1, 0.37):
         assert given(model, q, 0.0) == pytest.approx(-0.5 * np.sin(12.0 * q + 0.3))
 
 
 def test_friction_at_rest_moves_with_that_in_motion_into_lugre_s_law():
     done, model = written(STRIBECK)
-    assert not done.untold and model.nu == 1 and model.dof_frictionloss[0] == pytest.approx(1.0)
+    assert not done.not_expressed and model.nu == 1 and model.dof_frictionloss[0] == pytest.approx(1.0)
     data, broke = mujoco.MjData(model), 0.0
     for k in range(8000):
         data.ctrl[0] = data.qpos[0] + 10.0 * data.qvel[0] / 200.0  # the servo gives nothing
@@ -66,7 +66,7 @@ def light(inertia, step):
 def test_the_bristle_of_a_small_joint_is_as_soft_as_its_step_needs(inertia, step):
     """A push below the friction at rest leaves the joint where it is."""
     done = export(verdict(STRIBECK), "mjcf", light(inertia, step))
-    assert not done.untold
+    assert not done.not_expressed
     model = mujoco.MjModel.from_xml_string(done.text)
     data = mujoco.MjData(model)
     speeds = []
@@ -78,7 +78,9 @@ def test_the_bristle_of_a_small_joint_is_as_soft_as_its_step_needs(inertia, step
 
 
 def test_a_joint_too_light_for_its_step_is_refused_with_the_step_it_needs():
-    (left,) = {x.reason for x in export(verdict(STRIBECK), "mjcf", light(1e-4, 0.002)).untold if x.constant == "static"}
+    (left,) = {
+        x.reason for x in export(verdict(STRIBECK), "mjcf", light(1e-4, 0.002)).not_expressed if x.constant == "static"
+    }
     assert "a timestep of 0.00032 s can express it" in left
 
 
@@ -86,7 +88,7 @@ def test_gains_and_the_reference_of_a_servo():
     done, model = written(
         cause("controller_gain", relative=-0.1, unit="1"), cause("command_delay", reference_delay=0.024, unit="s")
     )
-    assert not done.untold
+    assert not done.not_expressed
     assert model.actuator_gainprm[0][0] == pytest.approx(180.0) and model.actuator_biasprm[0][2] == pytest.approx(-9.0)
     assert model.actuator_delay[0] == pytest.approx(0.024)
     _, model = written(cause("controller_gain", velocity_relative=0.5, unit="1"))
@@ -96,4 +98,4 @@ def test_gains_and_the_reference_of_a_servo():
 def test_a_motor_has_no_gains_of_a_servo():
     model = MODEL.replace('<position name="p" joint="slide" kp="200" kv="10"/>', '<motor joint="slide"/>')
     done = export(verdict(cause("controller_gain", relative=-0.1)), "mjcf", parse_xml(model, "mujoco"))
-    assert not done.applied and "no such actuator" in done.untold[0].reason
+    assert not done.applied and "no such actuator" in done.not_expressed[0].reason

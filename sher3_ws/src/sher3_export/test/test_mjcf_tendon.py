@@ -42,16 +42,18 @@ def test_friction_and_rotor_of_a_motor_act_by_its_own_travel():
 
 def test_what_a_tendon_has_no_field_for_is_listed():
     done = written(cause("backlash", "wrist", unit="rad", width=0.01))
-    assert not done.applied and "tendon has frictionloss, damping, armature alone" in str(done.untold[0])
+    assert not done.applied and "tendon has frictionloss, damping, armature alone" in str(done.not_expressed[0])
     done = written(cause("coulomb_friction", "wrist", force=0.3), motors={"wrist": {"hand": 1.0}})
-    assert "no joint hand (joints: elbow, wrist)" in str(done.untold[0])
+    assert "no joint hand (joints: elbow, wrist)" in str(done.not_expressed[0])
 
 
 def test_other_targets_say_which_has_a_field():
     friction = verdict(cause("coulomb_friction", "wrist", force=0.3))
     assert len(export(friction, "yaml", motors=TRAVEL).applied) == 1
     done = export(friction, "ros2_control", motors=TRAVEL)
-    assert "ros2_control has no field for a motor that moves several joints; --to mjcf has" in str(done.untold[0])
+    assert "ros2_control has no field for a motor that moves several joints; --to mjcf has" in str(
+        done.not_expressed[0]
+    )
 
 
 def test_causes_behind_a_coupling_are_not_written_at_the_joints_instead():

@@ -43,7 +43,7 @@ def test_causes_are_written_into_the_model_in_one_piece(robot, more):
     )
     mass = cause("link_mass", "upper", unit="1", relative=0.5)
     done = export(verdict(friction, gain, mass), "mjcf", path)
-    assert not done.untold
+    assert not done.not_expressed
     before, after = mujoco.MjModel.from_xml_path(str(path)), mujoco.MjModel.from_xml_string(done.text)
     names = [before.joint(i).name for i in range(before.njnt)]
     assert names == [after.joint(i).name for i in range(after.njnt)]

@@ -45,8 +45,8 @@ def test_urdf_takes_friction_damping_limit_and_zero():
 def test_urdf_names_what_it_has_no_field_for():
     causes = (cause("backlash", width=0.01), cause("payload_mass", mass=1.0), cause("drive_lag", time_constant=0.1))
     done = export(verdict(*causes), "urdf", parse_xml(URDF, "robot"))
-    assert [x.constant for x in done.untold] == ["backlash", "inertia", "lag"] and not done.applied
-    assert all(len(x.reason) > 20 for x in done.untold)
+    assert [x.constant for x in done.not_expressed] == ["backlash", "inertia", "lag"] and not done.applied
+    assert all(len(x.reason) > 20 for x in done.not_expressed)
 
 
 def test_sdf_takes_friction_and_damping():
@@ -61,14 +61,14 @@ def test_isaac_takes_friction_at_rest_and_in_motion_and_counts_delays_in_steps()
     group = yaml.safe_load(done.text)["actuators"]["slide"]
     assert group["friction"] == 3.0 and group["dynamic_friction"] == 2.0 and group["viscous_friction"] == 0.3
     assert group["class"].endswith("DelayedPDActuatorCfg") and (group["min_delay"], group["max_delay"]) == (2, 3)
-    assert [x.constant for x in done.untold] == ["stribeck"]
+    assert [x.constant for x in done.not_expressed] == ["stribeck"]
 
 
 def test_yaml_takes_every_constant_with_its_interval():
     done = export(verdict(FRICTION, cause("backlash", width=0.01, unit="rad")), "yaml")
     joints = yaml.safe_load(done.text)["joints"]["slide"]
     assert joints["coulomb"][0] == {"value": 2.0, "low": 1.8, "high": 2.2, "unit": "N*m", "from": "coulomb_friction"}
-    assert joints["backlash"][0]["value"] == 0.01 and not done.untold
+    assert joints["backlash"][0]["value"] == 0.01 and not done.not_expressed
 
 
 MJCF = """<mujoco><default><joint damping="0.1"/></default><worldbody><body><joint name="slide" frictionloss="0.5"/>
@@ -143,7 +143,7 @@ def test_isaaclab_s_file_is_python_with_fields_that_isaac_lab_has(monkeypatch):
     slide = actuators["slide"]
     assert (slide.dynamic_friction, slide.friction) == (2.5, 2.5) and slide.viscous_friction == pytest.approx(0.4)
     assert (slide.armature, slide.actuator_effort_limit, slide.stiffness) == (0.02, 4.0, None)
-    assert (slide.min_delay, slide.max_delay) == (6, 6) and not done.untold  # MuJoCo's step where none is stated
+    assert (slide.min_delay, slide.max_delay) == (6, 6) and not done.not_expressed  # MuJoCo's step where none is stated
     assert ranges["slide"]["dynamic_friction"] == pytest.approx((2.3, 2.7))
 
 
@@ -164,7 +164,7 @@ def test_gains_of_a_servo_are_written_where_the_model_states_them(monkeypatch):
     slide = loaded(export(weak, "isaaclab", servo).text, monkeypatch)[0]["slide"]
     assert (slide.stiffness, slide.damping) == (pytest.approx(180.0), pytest.approx(7.2))
     for model in (None, parse_xml(SERVO.format('<motor joint="slide"/>'), "mujoco")):
-        (left,) = export(weak, "isaaclab", model).untold
+        (left,) = export(weak, "isaaclab", model).not_expressed
         assert "give --model with position actuators" in left.reason
 
 
@@ -223,7 +223,7 @@ def test_mjlab_s_file_is_python_with_fields_that_mjlab_has(monkeypatch):
         "viscous_damping",
         "armature",
     }
-    assert [(x.constant, "--to mjcf" in x.reason) for x in done.untold] == [("limit", True)]
+    assert [(x.constant, "--to mjcf" in x.reason) for x in done.not_expressed] == [("limit", True)]
 
 
 def test_without_a_model_a_configuration_says_that_its_values_add(monkeypatch):

@@ -28,7 +28,7 @@ def test_a_wrong_link_moves_as_the_verdict_says_and_twice_as_far_when_said_twice
     """The mesh of a body that states its inertia is not there, and not needed."""
     wrong = cause("link_inertia", "fore", change=0.104, **HEAVIER)
     done = written(to, wrong)
-    assert len(done.applied) == 4 and not done.untold and "next to" in done.text
+    assert len(done.applied) == 4 and not done.not_expressed and "next to" in done.text
     again = written(to, wrong, text=done.text)
     for times, text in ((1.0, done.text), (2.0, again.text)):
         change = np.zeros(20)
@@ -50,4 +50,4 @@ def test_sums_over_links_become_bodies_that_can_exist():
 def test_a_compiler_that_takes_inertias_from_geoms_would_not_see_them():
     text = MJCF.replace("<asset>", '<compiler inertiafromgeom="true"/><asset>')
     done = written("mjcf", cause("link_inertia", "fore", change=0.1, mx=0.1), text=text)
-    assert "inertiafromgeom" in done.untold[0].reason and not done.applied
+    assert "inertiafromgeom" in done.not_expressed[0].reason and not done.applied

@@ -57,9 +57,9 @@ def creeps(braking: Braking, drives: MotorDriverSettings, caps: Vector, cap: Spe
     v = np.minimum(np.array([*SPEEDS, np.inf])[:, None], np.array(caps))
     left = per_axis(drives.position_distance, drives.position_angle)
     left = left + drives.position_lag * np.minimum(braking.axis_speeds(cap.linear, cap.angular), np.array(caps))
-    told = _told(v, drives)
+    noticed = _until_noticed(v, drives)
     after = 2.0 * v * drives.period + v * v / (2.0 * braking.deceleration) + v * braking.lag
-    ways = {"honest": np.minimum(left, told) + after, "false": left + after, "missing": left + after}
+    ways = {"honest": np.minimum(left, noticed) + after, "false": left + after, "missing": left + after}
     return [
         Creep(name, float(v[row, axis]), echo, float(braking.reach()[axis] * ways[echo][row, axis]))
         for axis, name in enumerate(ACTUATORS)
@@ -87,7 +87,7 @@ def given_way(braking: Braking, ki: Array, share: float) -> Array:
     return np.asarray(share * (reach * reach / ki).max(axis=0))
 
 
-def _told(v: Array, drives: MotorDriverSettings) -> Array:
+def _until_noticed(v: Array, drives: MotorDriverSettings) -> Array:
     """Return how far axes go at speeds `v` (n, 5) until their honest echoes give them away; inf: they never do."""
     limit, memory = per_axis(drives.obey_distance, drives.obey_angle), drives.following_memory
     with np.errstate(divide="ignore", invalid="ignore"):

@@ -198,8 +198,8 @@ class _Slow(Kind):
     def __call__(self, items: list[Any], now: int) -> list[Any]:
         """Falsify by as much as the time since the first item says."""
         self._begin = now if self._begin is None else self._begin
-        told = {"scale": 1.0, "offset": 0.0, "code": 0.0, **self.falsity(1e-9 * (now - self._begin))}
-        return [self.items.wrong(item, told) for item in items]
+        falsity = {"scale": 1.0, "offset": 0.0, "code": 0.0, **self.falsity(1e-9 * (now - self._begin))}
+        return [self.items.wrong(item, falsity) for item in items]
 
     def falsity(self, time: float) -> Parameters:
         """Return scale and offset `time` s after the first item."""
@@ -326,9 +326,9 @@ class Jitter(Chatter):
 
     def __call__(self, items: list[Any], now: int) -> list[Any]:
         """Return each item off by `size`, to one side and to the other."""
-        size, told = self.parameters["size"], {"scale": 1.0, "code": 0.0}
+        size, falsity = self.parameters["size"], {"scale": 1.0, "code": 0.0}
         sides = [size if self._is_false(item) else -size for item in items]
-        return [self.items.wrong(item, {**told, "offset": side}) for item, side in zip(items, sides, strict=True)]
+        return [self.items.wrong(item, {**falsity, "offset": side}) for item, side in zip(items, sides, strict=True)]
 
 
 class Miswired(Kind):

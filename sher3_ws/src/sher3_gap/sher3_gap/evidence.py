@@ -1,4 +1,4 @@
-"""The evidence of a case: runs, residuals, floors and whitened targets, prepared once."""
+"""The evidence of a case: runs, residuals, floors and standardised targets, prepared once."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ import numpy as np
 from sher3_description import ACTUATORS, Robot
 from sher3_diagnosis.channel import Array, Channel, Floors, Residual, Residuals
 from sher3_diagnosis.evidence import Evidence
+from sher3_diagnosis.fit.standardised import Standardised
 from sher3_diagnosis.fit.tolerance import Tolerance, as_built, tolerance
-from sher3_diagnosis.fit.whitened import Whitened
 from sher3_effects import library
 
 from sher3_gap.nominal_replay import driven_as, followed
@@ -55,7 +55,7 @@ def own_residuals(run: RunSignals, robot: Robot, shift: float) -> Residuals:
 
 
 def gather(runs: Sequence[RunSignals], robot: Robot) -> SherEvidence:
-    """Compute residuals, floors and whitened targets of a case."""
+    """Compute residuals, floors and standardised targets of a case."""
     geometry = Geometry(robot)
     timing = timing_of(runs, robot)
     demands = [demand_in_force(run, robot, timing) for run in runs]
@@ -69,7 +69,7 @@ def gather(runs: Sequence[RunSignals], robot: Robot) -> SherEvidence:
         _follow_the_drive(run, robot, geometry, r, f, d, largest)
         for run, r, f, d in zip(runs, residuals, own, demands, strict=True)
     ]
-    data = Whitened(views, residuals, own)
+    data = Standardised(views, residuals, own)
     return SherEvidence(
         excitations=[run.excitation for run in runs],
         data=data,
@@ -84,7 +84,7 @@ def gather(runs: Sequence[RunSignals], robot: Robot) -> SherEvidence:
     )
 
 
-def tolerated(data: Whitened, robot: Robot) -> Iterator[Tolerance]:
+def tolerated(data: Standardised, robot: Robot) -> Iterator[Tolerance]:
     """Return what the robot may deviate by from its drawing, as its pages say."""
     for page in library().values():
         for site in (s for place in page.places for s in PLACES[place]):

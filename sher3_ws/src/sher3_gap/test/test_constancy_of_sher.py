@@ -1,7 +1,7 @@
 """A true effect has one size in every excitation; one that stands in for another does not."""
 
 import numpy as np
-from sher3_diagnosis.attribute.steadiness import steadiness_of
+from sher3_diagnosis.attribute.constancy import constancy_of
 from sher3_diagnosis.fit.fitting import fit, make_term
 from sher3_effects import library, plants
 from sher3_gap.evidence import gather
@@ -12,7 +12,7 @@ def found(effect, **truth):
     runs = runs_of(("reversals", "sweep", "sweep_0.4"), [plants()["coulomb_friction"]("delta_1", force=1.0)], repeats=1)
     evidence = gather(signals(runs), ROBOT)
     term = make_term(evidence.data, library()[effect], "delta_1", truth)
-    return steadiness_of(evidence, fit(evidence.data, [term]), 0)
+    return constancy_of(evidence, fit(evidence.data, [term]), 0)
 
 
 def test_the_true_effect_is_constant():

@@ -51,7 +51,7 @@ def test_what_the_size_of_a_changing_load_would_add_does_not_count(run):
     found = wrench_residual(run, Geometry(ROBOT))[SENSOR]
     path = Geometry(ROBOT).path(run)
     ramp = np.any(changing(run), axis=(0, 2))[found.ok]
-    assert path.told is not None and ramp.sum() > 50
+    assert path.determined is not None and ramp.sum() > 50
     load = np.where(np.any(changing(run), axis=(0, 2))[:, None], Geometry(ROBOT).path(run).contact_wrench, 0.0)
     kept = found.relieved(load[found.ok])[ramp]
     assert np.abs(kept).max() < 0.02 * np.abs(load).max()

@@ -97,9 +97,7 @@ def test_the_node_publishes_once_a_second():
     with Graph(middleware=False) as graph:
         graph.add(Robot)
         lines = []
-        graph.add(
-            GapMonitorNode, ROBOT, window=1.0, told=lambda *judged: lines.append(json.loads(judged_json(*judged)))
-        )
+        graph.add(GapMonitorNode, ROBOT, window=1.0, say=lambda *judged: lines.append(json.loads(judged_json(*judged))))
         probe = graph.probe(TOPIC)
         graph.step(880)
         names = {s.name for s in probe.samples[TOPIC]}

@@ -27,15 +27,15 @@ class Corrected:
     Attributes:
         text: of the model.
         written: what was changed, one sentence each.
-        untold: what the model's format cannot say, one sentence each.
+        not_expressed: what the model's format cannot say, one sentence each.
     """
 
     text: str
     written: Sequence[str]
-    untold: Sequence[str]
+    not_expressed: Sequence[str]
 
     def __str__(self) -> str:
-        return "\n".join([*self.written, *(f"not expressed: {x}" for x in self.untold)]) or "nothing to correct"
+        return "\n".join([*self.written, *(f"not expressed: {x}" for x in self.not_expressed)]) or "nothing to correct"
 
 
 def corrected(verdict: Verdict, source: Source | None, to: str = "") -> Corrected:
@@ -53,4 +53,4 @@ def corrected(verdict: Verdict, source: Source | None, to: str = "") -> Correcte
         root = parse_xml(source.text, ROOTS[own])
         root = root if source.bodies.mujoco is None else whole(root, source.path)
     done = export(verdict, target, root)
-    return Corrected(done.text, [str(x) for x in done.applied], [str(x) for x in done.untold])
+    return Corrected(done.text, [str(x) for x in done.applied], [str(x) for x in done.not_expressed])

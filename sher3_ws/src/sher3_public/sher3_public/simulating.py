@@ -58,14 +58,14 @@ class Replays:
     """Replays by joint, and what the corrected model could not be given, one sentence each."""
 
     joints: Mapping[str, Replay]
-    untold: Sequence[str]
+    not_expressed: Sequence[str]
 
     def __str__(self) -> str:
         rows = [
             f"{name}: {quantity(r.before, r.unit)} rms untuned, {quantity(r.after, r.unit)} corrected"
             for name, r in self.joints.items()
         ]
-        return "\n".join([*rows, *(f"not expressed: {x}" for x in self.untold)])
+        return "\n".join([*rows, *(f"not expressed: {x}" for x in self.not_expressed)])
 
     def plot(self) -> Figure:
         """Return a figure with a picture for each joint: position over time, the windows side by side."""
@@ -96,7 +96,7 @@ def replays(verdict: Verdict, case: Case) -> Replays:
     tuned = bench.compiled(done.text)
     pairs = [(record, bench.nominal.run(record), tuned.run(record)) for record in bench.records]
     found = {name: _joined([_of(name, *pair) for pair in pairs]) for name in bench.joints}
-    return Replays(found, [str(x) for x in done.untold])
+    return Replays(found, [str(x) for x in done.not_expressed])
 
 
 def _root(case: Case) -> Any:

@@ -65,7 +65,7 @@ def test_a_model_of_several_files_and_macros(tmp_path, as_spec):
     assert [(c.effect, c.actuator) for c in found.causes] == [("viscous_friction", "shoulder")]
     done = found.corrected()
     corrected = mujoco.MjModel.from_xml_string(done.text)
-    assert not done.untold and corrected.njnt == 4
+    assert not done.not_expressed and corrected.njnt == 4
     assert corrected.joint("shoulder").damping[0] == pytest.approx(2.5, rel=0.02)
     replay = found.simulate().joints["shoulder"]
     assert replay.after < 0.2 * replay.before

@@ -54,7 +54,7 @@ def test_the_worst_is_the_one_nearest_to_its_budget_and_one_beyond_it_misses():
     assert (
         "3 draws, seed 1: 1 beyond their budget." in result.as_text() and "| B | 251.0 | 250 | 4 |" in result.as_text()
     )
-    assert result.to_dict()["trials"][0]["faults"] == DRAW.told()
+    assert result.to_dict()["trials"][0]["faults"] == DRAW.in_words()
 
 
 @pytest.mark.parametrize(

@@ -118,7 +118,7 @@ class PlantNode(Node):
             links = open_links([channel.link for channel in settings.channels])
         self.drives = MockDriveBus(links, cast(DrivePlant, self), robot, settings, self._now)
         self._faults = None if faults is None else faults(self.drives, self._force, self._pedal)
-        self._truth_told = False
+        self._truth_said = False
         self._publish_truth = advertise(self, "mock/true_js")
         self._publish_report = advertise(self, "diagnostics")
         self._publish_tip = advertise(self, "tracker/measured_cp")
@@ -143,7 +143,7 @@ class PlantNode(Node):
         self.reading = reading = self.plant.step(velocity_command, self._wrench if fresh else NOTHING)
         stamp = self._stamp()
         self._stream(stamp)
-        if self._truth_told:
+        if self._truth_said:
             self._tell_truth()
         else:
             self._press()
@@ -205,7 +205,7 @@ class PlantNode(Node):
     def _on_fault(self, sample: TextSample) -> None:
         if self._faults is None:
             return
-        self._truth_told = True
+        self._truth_said = True
         try:
             self._faults.take(sample.text, self._now())
         except Sher3Error as error:

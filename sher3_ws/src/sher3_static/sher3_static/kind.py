@@ -146,5 +146,5 @@ class StaticTest(Machine[Readings, TableEvidence]):
 def causes_in_words(finding: Finding[TableEvidence]) -> list[str]:
     """Return what the pages of the causes say of their parameters on this machine."""
     view = finding.evidence.table.view
-    told = [t.effect.in_words(view, t.effect.parameters(t.shape, found)) for t, found in finding.attribution.told]
-    return [note for note in told if note]
+    sentences = [t.effect.in_words(view, t.effect.parameters(t.shape, found)) for t, found in finding.attribution.named]
+    return [note for note in sentences if note]

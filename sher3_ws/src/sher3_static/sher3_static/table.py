@@ -11,8 +11,8 @@ from sher3_diagnosis.channel import Array, Channel, Residual
 from sher3_diagnosis.effect import Effect, Shape, Signature
 from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.fit.fitting import Fit, make_term
+from sher3_diagnosis.fit.standardised import Standardised
 from sher3_diagnosis.fit.tolerance import NUISANCE
-from sher3_diagnosis.fit.whitened import Whitened
 from sher3_diagnosis.thresholds import EATEN
 from sher3_diagnosis.words import quantity
 from sher3_effects.table_view import Still
@@ -97,7 +97,7 @@ def evidence_of(table: Table) -> TableEvidence:
     """Return the residuals of a table, each part held out in turn."""
     labels = held_out(table)
     parts = [labels == k for k in np.unique(labels)]
-    data = Whitened(
+    data = Standardised(
         [table.view] * len(parts),
         [{table.channel: Residual(table.residual, part)} for part in parts],
         [{table.channel: table.floor}] * len(parts),
@@ -155,5 +155,5 @@ def eaten(table: Table) -> str:
     One component that tells is enough.
     """
     share = float(np.min(table.floor / np.maximum(table.spread, np.finfo(float).tiny)))
-    told = f"cannot be judged: readings of {table.name} scatter by {share:.2g} of what they should follow, and a cause"
-    return f"{told} would hide in it; a wider range, more repeats or a better reference would tell" * (share > EATEN)
+    text = f"cannot be judged: readings of {table.name} scatter by {share:.2g} of what they should follow, and a cause"
+    return f"{text} would hide in it; a wider range, more repeats or a better reference would tell" * (share > EATEN)

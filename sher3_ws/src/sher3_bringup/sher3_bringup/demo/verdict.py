@@ -14,7 +14,7 @@ from sher3_runtime.clock import NEVER_NS
 
 from sher3_bringup.errors import EndedInFault, SessionFailed
 from sher3_bringup.surgeon.script import Script
-from sher3_bringup.terminal.told import state_line
+from sher3_bringup.terminal.status_news import state_line
 
 PRESSED = 0.5
 """Pedal travel, and force of the hand [N], from which the robot has to follow the hand in a step."""

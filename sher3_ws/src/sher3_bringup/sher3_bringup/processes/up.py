@@ -80,7 +80,7 @@ def run_graph(
         finally:
             terminal.end()
     say("stopped" + (f"; recorded {settings.record}" if settings.record else ""))
-    return terminal.told.fault
+    return terminal.news.fault
 
 
 def launch_nodes(fleet: Fleet, settings: RunSettings, realtime: int, patience: float = 60.0) -> None:

@@ -16,15 +16,15 @@ from sher3_bringup.errors import ConfigurationError, EndedInFault, StartError
 from sher3_bringup.surgeon.keyboard import HELP, Keyboard
 from sher3_bringup.surgeon.script import Script
 from sher3_bringup.terminal.screen import Screen
-from sher3_bringup.terminal.told import UNKNOWN, Told
+from sher3_bringup.terminal.status_news import UNKNOWN, StatusNews
 
 LISTENED = 5.0
 """Seconds after which a robot that has not been heard is not there: it tells its state once a second."""
 
 
-def is_over(script: Script, told: Told, elapsed: float) -> bool:
+def is_over(script: Script, news: StatusNews, elapsed: float) -> bool:
     """Return whether a script has nobody to act on, or has come to its end, `elapsed` seconds after its start."""
-    return elapsed >= script.duration or (told.state == UNKNOWN and elapsed >= LISTENED)
+    return elapsed >= script.duration or (news.state == UNKNOWN and elapsed >= LISTENED)
 
 
 def run_script(script: Script, rate: float, domain: int) -> None:
@@ -36,11 +36,11 @@ def run_script(script: Script, rate: float, domain: int) -> None:
     from sher3_bringup.surgeon.teleop_node import run_node, script_node
     from sher3_bringup.terminal.listener_node import listen
 
-    shown, told, screen = [-1], Told(), Screen()
+    shown, news, screen = [-1], StatusNews(), Screen()
     nodes: list[Any] = []
 
     def hear(topic: str, data: dict[str, Any]) -> None:
-        for line in told.hear(topic, data):
+        for line in news.hear(topic, data):
             screen(f"{nodes[0].elapsed:6.1f} s  {line}")
 
     def make() -> Any:
@@ -53,15 +53,15 @@ def run_script(script: Script, rate: float, domain: int) -> None:
         if step != shown[0]:
             shown[0] = step
             screen(f"{node.elapsed:6.1f} s  {script.steps[step].name}")
-        screen.status(told.status())
-        return is_over(script, told, node.elapsed)
+        screen.status(news.status())
+        return is_over(script, news, node.elapsed)
 
     run_node(make, stop, rate, domain)
     screen.status("")
-    if told.state == UNKNOWN:
+    if news.state == UNKNOWN:
         raise StartError("no robot is heard", value=f"domain {domain}", remedy="start `sher3 up`, or name its --domain")
-    if told.fault:
-        raise EndedInFault(told.fault)
+    if news.fault:
+        raise EndedInFault(news.fault)
 
 
 def run_keyboard(rate: float, domain: int, device: Path | None = None) -> None:

@@ -10,7 +10,7 @@ from typing import Any
 
 from sher3_common.progress import Say
 
-from sher3_bringup.terminal.told import Told
+from sher3_bringup.terminal.status_news import StatusNews
 
 NAME = "terminal"
 """Of the process; the robot goes on without it."""
@@ -22,12 +22,12 @@ class Beside:
     """Two ends of a wire: `make_nodes` runs in the process beside, `look` in the parent.
 
     Attributes:
-        told: what was heard so far.
+        news: what was heard so far.
     """
 
     def __init__(self, say: Say, status: Say) -> None:
         """Take what prints a line and what writes the status line."""
-        self.told = Told()
+        self.news = StatusNews()
         self._say, self._status = say, status
         self._ours, self._theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         self._ours.setblocking(False)
@@ -50,9 +50,9 @@ class Beside:
         """Print what has come since the last call."""
         with suppress(BlockingIOError):
             while packet := self._ours.recv(LARGEST):
-                for line in self.told.hear(*json.loads(packet)):
+                for line in self.news.hear(*json.loads(packet)):
                     self._say(f"{time.monotonic() - self._begin:6.1f} s  {line}")
-        self._status(self.told.status())
+        self._status(self.news.status())
 
     def end(self) -> None:
         """Print what has come, and take the status line away."""

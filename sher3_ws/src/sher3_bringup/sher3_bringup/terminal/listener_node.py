@@ -14,7 +14,7 @@ from sher3_common import Sher3Error, parse_json
 from sher3_common.samples import DiagnosticSample, TextSample
 from sher3_runtime.ports import NODE_OPTIONS, subscribe
 
-from sher3_bringup.terminal.told import DIAGNOSTICS, SOURCES
+from sher3_bringup.terminal.status_news import DIAGNOSTICS, SOURCES
 
 Hear = Callable[[str, dict[str, Any]], object]
 """Takes the name of a topic, and its content as plain data."""

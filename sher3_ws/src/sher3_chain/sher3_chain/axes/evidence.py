@@ -41,7 +41,7 @@ class AxisEvidence(ChainEvidence):
         mass: nominal or identified, kg or kg m^2, without what runs carried; 0 where the force balance is not looked
             at.
         mass_interval: 95 %, of an identified mass.
-        untold: why the force balance is not judged, where a mass could not be identified.
+        not_judged: why the force balance is not judged, where a mass could not be identified.
         notes: what was put right of the effort.
     """
 
@@ -49,7 +49,7 @@ class AxisEvidence(ChainEvidence):
     records: Sequence[AxisView]
     mass: float
     mass_interval: tuple[float, float] | None = None
-    untold: str = ""
+    not_judged: str = ""
     notes: Sequence[str] = ()
 
     def own_unit(self, unit: str, site: str) -> str:
@@ -69,7 +69,7 @@ def gather_axis(runs: Sequence[AxesRun], axis: Axis, repeats: bool) -> AxisEvide
         return found
     judged = _gathered(runs, tracked, repeats)
     note = f"{axis.name}: its effort tells no force balance; judged by how it follows its reference"
-    return replace(judged, untold=found.untold, notes=[*found.notes, *judged.notes, note])
+    return replace(judged, not_judged=found.not_judged, notes=[*found.notes, *judged.notes, note])
 
 
 def force_is_seen(evidence: AxisEvidence, channel: Channel) -> bool:
@@ -99,7 +99,7 @@ def _gathered(runs: Sequence[AxesRun], axis: Axis, repeats: bool) -> AxisEvidenc
     axis, stops = with_stops(signals, axis)
     notes = [*levels_of(signals, axis), *notes, *stops]
     mass, interval = (axis.mass, None) if isinstance(axis.mass, float) else (0.0, None)
-    untold, load_mass = slip, 0.0
+    not_judged, load_mass = slip, 0.0
     if axis.mass == "unknown" and all(s.effort is not None for s in signals):
         try:
             acts = acting(signals, axis)
@@ -108,13 +108,13 @@ def _gathered(runs: Sequence[AxesRun], axis: Axis, repeats: bool) -> AxisEvidenc
         except MachineError as error:
             share = share_of_inertia([AxisView(s, axis, 0.0) for s in signals])
             if share < NO_INERTIA:
-                told = f"the record does not tell its mass, which needs at most {share:.1%} of the force; left out"
-                notes = [*notes, f"{axis.name}: {told}"]
+                text = f"the record does not tell its mass, which needs at most {share:.1%} of the force; left out"
+                notes = [*notes, f"{axis.name}: {text}"]
             else:
-                untold = str(error)
+                not_judged = str(error)
     carried = carried_by(axis, [s.name for s in signals])
     records = [AxisView(s, axis, mass + m, load_mass) for s, m in zip(signals, carried, strict=True)]
-    found = [_judged(residuals_of(view), untold) for view in records]
+    found = [_judged(residuals_of(view), not_judged) for view in records]
     floors = floors_of(records, found, repeats)
     data = in_blocks(records, found, floors)
     return AxisEvidence(
@@ -129,7 +129,7 @@ def _gathered(runs: Sequence[AxesRun], axis: Axis, repeats: bool) -> AxisEvidenc
         records=records,
         mass=mass,
         mass_interval=interval,
-        untold=untold,
+        not_judged=not_judged,
         notes=notes,
     )
 
@@ -166,9 +166,9 @@ def levels_of(signals: Sequence[AxisSignals], axis: Axis) -> list[str]:
     return notes
 
 
-def _judged(found: Residuals, untold: str) -> Residuals:
+def _judged(found: Residuals, not_judged: str) -> Residuals:
     """Return the residuals without the force balance where the mass could not be identified."""
-    return {c: x for c, x in found.items() if not untold or c.stage != "motor_mechanics"}
+    return {c: x for c, x in found.items() if not not_judged or c.stage != "motor_mechanics"}
 
 
 def units_of(axis: Axis) -> Mapping[Channel, str]:
@@ -190,8 +190,8 @@ def residuals_of(view: AxisView) -> Residuals:
     out: Residuals = {}
     if axis.servo:
         assert run.reference is not None
-        told = view.in_motion if view.mostly_moves else run.inner
-        out[Channel("motor_mechanics", axis.name)] = Residual(run.to_grid(run.reference - run.motor), told)
+        judged = view.in_motion if view.mostly_moves else run.inner
+        out[Channel("motor_mechanics", axis.name)] = Residual(run.to_grid(run.reference - run.motor), judged)
     elif (axis.mass is not None or axis.signals.nominal_effort is not None) and run.effort is not None:
         balance = run.to_grid(run.effort) - view.inertial
         out[Channel("motor_mechanics", axis.name)] = Residual(balance, view.in_motion)

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 from sher3_diagnosis.channel import Floors
-from sher3_diagnosis.fit.whitened import Whitened
+from sher3_diagnosis.fit.standardised import Standardised
 from sher3_diagnosis.machine import Rehearsal
 
 from sher3_chain.axes.evidence import AxisEvidence, residuals_of
@@ -36,7 +36,7 @@ def foreseen(evidence: AxisEvidence) -> Iterator[Rehearsal]:
         yield Rehearsal("the same motion", WHY_WEIGHED, WEIGHED, _runs(evidence, "weighed", 1.0, evidence.mass))
 
 
-def _runs(evidence: AxisEvidence, name: str, speed: float, carried: float) -> Whitened:
+def _runs(evidence: AxisEvidence, name: str, speed: float, carried: float) -> Standardised:
     axis, floor = evidence.axis, _floors(evidence)
     runs = [replace(run, period=run.period / speed) for run in evidence.runs]
     views = zip(runs, evidence.records, strict=True)

@@ -107,7 +107,7 @@ class Axes(Chain[AxisEvidence]):
         free, servo, own = evidence.axis.free, evidence.axis.servo, evidence.axis.own_unit
         causes = causes if free else requantified(evidence, attribution, causes)
         causes = causes if free or servo else with_unseen(evidence, attribution, causes)
-        causes = within_bounds(causes, attribution.told, self.effects(evidence))
+        causes = within_bounds(causes, attribution.named, self.effects(evidence))
         if free:
             return refine_free(evidence, causes)
         causes = with_second_pole(with_dead_band(causes)) if servo else in_true_force(causes)
@@ -121,11 +121,11 @@ class Axes(Chain[AxisEvidence]):
         """Say which mass was found, what the recorded signals cannot tell, and how the axis runs again."""
         again = replay(finding.evidence, finding.causes) if finding.significant else None
         changes = change_notes(finding.evidence, finding.attribution, self.parted(finding.evidence))
-        untold = finding.evidence.untold
+        not_judged = finding.evidence.not_judged
         changes += finding.evidence.notes
         own = finding.evidence.axis.own_unit
         changes += [own_unit_note(finding.evidence.axis.name, own)] if own else []
-        changes += [f"{untold}: its force balance is not judged"] if untold else []
+        changes += [f"{not_judged}: its force balance is not judged"] if not_judged else []
         return [
             *changes,
             *mass_notes(finding.evidence),
@@ -189,7 +189,9 @@ def nothing_judged(parts: Sequence[AxisEvidence], runs: Sequence[AxesRun]) -> Ma
     for part in parts:
         dead = [what for run in runs for what in wrong_readings(run, part.axis).values()]
         flat = levels_of([view.run for view in part.records], part.axis)
-        said.append("; ".join([*flat[:1], part.untold or (dead[0] if dead else f"{part.axis.name}: {missing(part)}")]))
+        said.append(
+            "; ".join([*flat[:1], part.not_judged or (dead[0] if dead else f"{part.axis.name}: {missing(part)}")])
+        )
     remedy = (
         "correct what is named, or record the reference of a servo, the effort of a driven axis, or a second encoder"
     )
@@ -283,7 +285,7 @@ def blind_spots(finding: Finding[AxisEvidence]) -> list[str]:
     axis = finding.evidence.axis
     out = [] if axis.signals.load is not None else [unseen_note(finding.evidence, finding.attribution.fit)]
     if axis.servo:
-        unread = axis.signals.effort is not None and not finding.evidence.untold
+        unread = axis.signals.effort is not None and not finding.evidence.not_judged
         why = "its effort is not looked at (`command_law: {kind: force}` does)" if unread else "force not recorded"
         out.append(f"{axis.name}: {why}: forces are given in units of the servo's stiffness")
         out.append(dead_band_note(axis.name, finding.causes, axis.unit_of_position))

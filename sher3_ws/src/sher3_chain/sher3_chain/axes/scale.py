@@ -25,11 +25,11 @@ def slip_of(signals: Sequence[AxisSignals], axis: Axis) -> str | None:
     views = [AxisView(s, axis, axis.mass if isinstance(axis.mass, float) else 0.0) for s in signals]
     known = isinstance(axis.mass, float) or axis.gravity != Gravity() or axis.signals.nominal_effort is not None
     asked = commands_force(axis) and all(s.command is not None for s in signals)
-    for told, most, what, force in (
+    for comparable, most, what, force in (
         (known, HEAVIEST, "its model needs", lambda view: view.inertial[:, 0]),
         (asked, SLIPPED, "its command asks for", _commanded),
     ):
-        if not told:
+        if not comparable:
             continue
         parts = [_equations(view, force(view)) for view in views]
         share = share_in(*(np.concatenate([part[k] for part in parts]) for k in (0, 1)))

@@ -38,8 +38,8 @@ def with_stops(signals: Sequence[AxisSignals], axis: Axis) -> tuple[Axis, list[s
         return axis, []
     ends = (-np.inf if low is None else -low, np.inf if high is None else high)
     unit = axis.unit_of_position
-    told = ", ".join(f"{end:.4g} {unit}" for end in ends if np.isfinite(end))
-    note = f"{axis.name}: stops found at {told}, where more holds it than its drive ever gives; `range` states them"
+    where = ", ".join(f"{end:.4g} {unit}" for end in ends if np.isfinite(end))
+    note = f"{axis.name}: stops found at {where}, where more holds it than its drive ever gives; `range` states them"
     return axis.model_copy(update={"range": ends}), [note]
 
 

@@ -69,7 +69,7 @@ class AxisView(ChainView):
             self.load_mass,
             axis.motion == "rotary",
             max(axis.encoder_resolution, self.noise),
-            axis.told,
+            axis.effort_is_demand,
         )
 
     @property
@@ -183,11 +183,11 @@ class AxisView(ChainView):
     def in_motion(self) -> Mask:
         """(g,) True where the force balance can be judged: well inside a stretch of motion."""
         limited = self.run.limited
-        told = self.moving & settled(~self.at_a_stop, AROUND_STOP)
-        told = told if limited is None else told & ~limited[self.run.grid]
-        inside = self.run.inner & self.released & settled(told, REST_SPREADS)
-        clear, told_by_force = inside & self.clear, not (self.described.free or self.described.servo)
-        return clear if clear.sum() >= ENOUGH * inside.sum() and told_by_force else inside
+        moves = self.moving & settled(~self.at_a_stop, AROUND_STOP)
+        moves = moves if limited is None else moves & ~limited[self.run.grid]
+        inside = self.run.inner & self.released & settled(moves, REST_SPREADS)
+        clear, by_force = inside & self.clear, not (self.described.free or self.described.servo)
+        return clear if clear.sum() >= ENOUGH * inside.sum() and by_force else inside
 
     @cached_property
     def in_fast_motion(self) -> Mask:

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from sher3_diagnosis.channel import Floors, Residual, Residuals
 from sher3_diagnosis.evidence import Evidence
-from sher3_diagnosis.fit.whitened import Whitened
+from sher3_diagnosis.fit.standardised import Standardised
 from sher3_machines.thresholds import BLOCKS
 
 from sher3_chain.joint.record import AxesRun
@@ -37,7 +37,7 @@ class ChainEvidence(Evidence):
         return self.records.index(self.data.views[block])
 
 
-def in_blocks(records: Sequence[Any], found: Sequence[Residuals], floors: Sequence[Floors]) -> Whitened:
+def in_blocks(records: Sequence[Any], found: Sequence[Residuals], floors: Sequence[Floors]) -> Standardised:
     """Return the residuals of all records cut into about eight blocks in all.
 
     Args:
@@ -47,7 +47,7 @@ def in_blocks(records: Sequence[Any], found: Sequence[Residuals], floors: Sequen
     """
     per_record = -(-BLOCKS // len(records))
     blocks = [(r, block) for r, x in enumerate(found) for block in blocks_of(x, per_record)]
-    return Whitened([records[r] for r, _ in blocks], [b for _, b in blocks], [floors[r] for r, _ in blocks])
+    return Standardised([records[r] for r, _ in blocks], [b for _, b in blocks], [floors[r] for r, _ in blocks])
 
 
 def blocks_of(found: Residuals, number: int) -> list[Residuals]:

@@ -14,10 +14,10 @@ from sher3_diagnosis.attribute.search import Left
 from sher3_diagnosis.fit.fitting import Fit
 from sher3_diagnosis.judge.left_over import down_to_floor
 from sher3_diagnosis.machine import Machine
-from sher3_machines.intake.notes import told_once
+from sher3_machines.intake.notes import merged
 
 from sher3_chain.chain.evidence import ChainEvidence
-from sher3_chain.joint.conditions import Condition, conditions_of, reference_runs, told_together
+from sher3_chain.joint.conditions import Condition, conditions_of, confounded_conditions, reference_runs
 from sher3_chain.joint.description import ChainDescription
 from sher3_chain.joint.record import AxesRun
 from sher3_chain.readings.wrong import wrong_readings
@@ -56,7 +56,7 @@ class Chain(Machine[AxesRun, E]):
         notes += [
             note for run in runs for joint in self.described.chain for note in wrong_readings(run, joint).values()
         ]
-        notes = told_once(notes, [run.name for run in runs]) + told_together(self.conditions(runs))
+        notes = merged(notes, [run.name for run in runs]) + confounded_conditions(self.conditions(runs))
         return notes if self.repeated(runs) else [*notes, NO_REPEATS]
 
     def attribute(self, evidence: E, candidates: Candidates, left_over: Left, say: Say) -> Attribution:

@@ -45,18 +45,18 @@ def foreseen(run: AxisSignals, residual: Residual) -> float:
     return float(np.mean([_left(x, y, one, other, noise) for one, other in (halves, halves[::-1])]))
 
 
-def _left(x: Array, y: Array, told: Rows, judged: Rows, noise: Array) -> float:
+def _left(x: Array, y: Array, fitted: Rows, judged: Rows, noise: Array) -> float:
     """Return the standard deviation of white noise with the innovation that a predictor leaves on `judged` rows.
 
     Args:
         x: inputs, (g, p), its own past first.
         y: residual, (g,).
-        told: rows that the predictor is fitted to.
+        fitted: rows that the predictor is fitted to.
         judged: the others.
         noise: white noise after the filter of the residuals, (n,), of a known standard deviation.
     """
-    size = np.linalg.norm(x[told], axis=0)
+    size = np.linalg.norm(x[fitted], axis=0)
     size[size == 0.0] = 1.0
-    beta = np.linalg.lstsq(x[told] / size, y[told], rcond=1e-9)[0] / size
+    beta = np.linalg.lstsq(x[fitted] / size, y[fitted], rcond=1e-9)[0] / size
     gain = np.convolve(noise, np.concatenate([[1.0], -beta[:PAST]]), "valid").std() / noise.std()
     return float(GAUSSIAN * np.median(np.abs(y[judged] - x[judged] @ beta)) / gain)

@@ -39,8 +39,8 @@ def within_bounds(
     out = []
     for cause, (term, coefficients) in zip(causes, terms, strict=True):
         linear = linear_in(term, coefficients)
-        told = {n: _cut(cause, n, p, stated, n in linear) for n, p in cause.parameters.items()}
-        out.append(cause.model_copy(update={"parameters": told}))
+        cut = {n: _cut(cause, n, p, stated, n in linear) for n, p in cause.parameters.items()}
+        out.append(cause.model_copy(update={"parameters": cut}))
     return out
 
 

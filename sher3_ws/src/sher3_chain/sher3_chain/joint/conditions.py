@@ -81,7 +81,7 @@ def reference_runs(conditions: Sequence[Condition], runs: Sequence[str]) -> list
     return [run for run in runs if not any(run in c.runs for c in conditions)]
 
 
-def told_together(conditions: Sequence[Condition]) -> list[str]:
+def confounded_conditions(conditions: Sequence[Condition]) -> list[str]:
     """Return in words which conditions have the same runs, so that nothing tells their effects apart."""
     out = []
     for i, a in enumerate(conditions):

@@ -13,7 +13,7 @@ from pydantic import Field, model_validator
 from sher3_machines.intake.fields import VELOCITIES, Clock, Column, Strict
 
 from sher3_chain.joint.conditions import Tagged
-from sher3_chain.joint.own_unit import OWN_UNITS, TOLD, VOLTAGES
+from sher3_chain.joint.own_unit import DEMANDS, OWN_UNITS, VOLTAGES
 
 
 class Signals(Strict):
@@ -195,10 +195,10 @@ class Axis(Strict):
         return "" if stated else OWN_UNITS.get(source.unit or "", "")
 
     @property
-    def told(self) -> bool:
+    def effort_is_demand(self) -> bool:
         """Whether what was recorded of the drive is no force yet."""
-        read, told = self.signals.effort, self.signals.command
-        return read.unit in VOLTAGES if read is not None else told is not None and told.unit in TOLD
+        read, command = self.signals.effort, self.signals.command
+        return read.unit in VOLTAGES if read is not None else command is not None and command.unit in DEMANDS
 
     @property
     def unit_of_force(self) -> str:

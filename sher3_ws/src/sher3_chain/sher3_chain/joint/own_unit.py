@@ -10,7 +10,7 @@ OWN_UNITS = {"A": "A", "mA": "A", "V": "V", "mV": "V", "%": "%", "count": "count
 """Unit of an effort that is no force -> the unit in which forces are then given."""
 
 VOLTAGES = ("V", "mV")
-TOLD = (*VOLTAGES, "%", "1")
+DEMANDS = (*VOLTAGES, "%", "1")
 """Units of what a drive is told: a coil, a propeller or a valve turns it into a force. An effort was read: of that, a
 share or a number without a unit is a force already, and only a voltage is none."""
 

@@ -135,8 +135,8 @@ def _mended(column: Column, tables: Tables, clock: Clock, run: str, of: tuple[st
     known, note = known_readings(x, stamps is not None, what)
     notes += [note] if note else []
     stamps, x = _only(stamps, x, known)
-    told = of[1] in (*READINGS, "reference")
-    fresh = fresh_readings(x, steps=of[1] not in ENCODERS) if told else np.ones(len(x), dtype=bool)
+    may_be_held = of[1] in (*READINGS, "reference")
+    fresh = fresh_readings(x, steps=of[1] not in ENCODERS) if may_be_held else np.ones(len(x), dtype=bool)
     if not fresh.all() and (of[1] in READINGS or goes_smoothly(x[fresh])):
         stamps, x = _only(stamps, x, fresh)
         notes.append(f"{what} is held for {hold_of(fresh):.0f} rows: slower than the log; its new readings are taken")
@@ -271,11 +271,11 @@ def _signed(axis: Axis, clock: Array, signals: dict[str, Array], run: str) -> li
     if column is None:
         return []
     x, effort = signals["position"], signals["effort"]
-    told = column.signed_by == MOTION
-    if not told and (column.signed_by is not None or not is_magnitude(clock, x, effort)):
+    stated = column.signed_by == MOTION
+    if not stated and (column.signed_by is not None or not is_magnitude(clock, x, effort)):
         return []
     signals["effort"] = np.abs(effort) * signs_of(clock, x)
-    why = "as the description says" if told else "because it is never below zero and clearer so"
+    why = "as the description says" if stated else "because it is never below zero and clearer so"
     return [f"{run}: {axis.name}.effort ({column.column}) has the sign of the motion, {why}"]
 
 

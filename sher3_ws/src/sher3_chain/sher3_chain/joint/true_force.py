@@ -24,15 +24,15 @@ def in_true_force(causes: Sequence[Cause]) -> list[Cause]:
     They stay as they are on a joint where no gain was found, or one that another mass stands in for: the forces are
     then right. A controller's gain in the place of a drive's is the same force.
     """
-    told = {page.id: {page.id, *page.indistinct} for page in pages("axis") if page.scales == GAIN}
-    sure = (c for c in causes if c.effect in told and told[c.effect].issuperset(c.rivals))
+    same_force = {page.id: {page.id, *page.indistinct} for page in pages("axis") if page.scales == GAIN}
+    sure = (c for c in causes if c.effect in same_force and same_force[c.effect].issuperset(c.rivals))
     gains = {c.actuator: c.parameters["relative"] for c in sure}
     return [_acting(cause, gains[cause.actuator]) if cause.actuator in gains else cause for cause in causes]
 
 
 def _acting(cause: Cause, gain: Parameter) -> Cause:
-    told = {n: _times(p, gain) if p.unit.startswith(FORCEFUL) else p for n, p in cause.parameters.items()}
-    return cause.model_copy(update={"parameters": told})
+    parameters = {n: _times(p, gain) if p.unit.startswith(FORCEFUL) else p for n, p in cause.parameters.items()}
+    return cause.model_copy(update={"parameters": parameters})
 
 
 def _times(parameter: Parameter, gain: Parameter) -> Parameter:

@@ -99,7 +99,7 @@ class ManipulatorDescription(ChainDescription):
         return self.joints
 
     @property
-    def told(self) -> frozenset[str]:
+    def commanded(self) -> frozenset[str]:
         """Joints whose command stands for an effort that nobody measured."""
         return frozenset(j.name for j in self.joints if j.signals.effort is None and j.signals.command is not None)
 

@@ -9,7 +9,7 @@ from typing import Any
 
 from sher3_machines.drafting.draft import drafted, written
 from sher3_machines.drafting.names import EFFORT, words_of
-from sher3_machines.drafting.unnamed import as_recorded, renamed, told_by_blocks
+from sher3_machines.drafting.unnamed import as_recorded, named_by_blocks, renamed
 from sher3_machines.errors import MachineError
 from sher3_machines.intake.kind import Draft
 from sher3_machines.intake.runs import longest
@@ -45,7 +45,7 @@ def draft_arm(path: Path, model: Path, rate: float | None = None, tables: Tables
     """
     guesses: list[str] = []
     bodies, tables = read_bodies(model), longest(path) if tables is None else tables
-    names = told_by_blocks(tables, rate, len(bodies.joints), guesses)
+    names = named_by_blocks(tables, rate, len(bodies.joints), guesses)
     chain = drafted(path, renamed(names, tables) if names else tables, rate, guesses, held=True)
     return written(as_recorded(of_arm(chain, bodies, guesses), names), guesses)
 
@@ -84,11 +84,11 @@ def of_arm(
             if "actuator" in words and "qfrc" not in words and own.drive is not None and own.drive.gear != 1.0:
                 effort["factor"] = own.drive.gear
             drive_joint(joint, own, bool(words & OWN_EFFORT) if simulated is None else simulated, guesses)
-    told = [
+    commanded = [
         j["name"] for j in joints if "reference" in j["signals"] and not {"effort", "command"} & j["signals"].keys()
     ]
-    if told := [name for name in told if name not in drives]:
-        guesses.append(f"a reference and no force was recorded: {GAINS} of {', '.join(told)}")
+    if commanded := [name for name in commanded if name not in drives]:
+        guesses.append(f"a reference and no force was recorded: {GAINS} of {', '.join(commanded)}")
     model.at_rest(recorded, guesses)
     out = {"kind": "manipulator", "name": data["name"], "model": str(Path(model.label).resolve()), "time": data["time"]}
     return {**out, "joints": joints}

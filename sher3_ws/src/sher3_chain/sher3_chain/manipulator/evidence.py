@@ -8,8 +8,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from sher3_diagnosis.channel import Array, Channel, Residual, Residuals
 from sher3_diagnosis.evidence import Evidence
+from sher3_diagnosis.fit.standardised import Standardised
 from sher3_diagnosis.fit.term import again
-from sher3_diagnosis.fit.whitened import Whitened
 from sher3_machines.errors import MachineError
 from sher3_machines.thresholds import BLOCKS
 
@@ -123,7 +123,7 @@ def gather_arm_motion(
     stated = {j.name for j in described.joints if not isinstance(j.gain, str)}
     own = [j.name for j in described.joints if j.gain == PER_RUN and j.name in judged]
     scales = {name: [share_of([view], name) for view in plain] for name in own}
-    judged = [name for name in judged if all(share.told for share in scales.get(name, ()))]
+    judged = [name for name in judged if all(share.identified for share in scales.get(name, ()))]
     slips = slipped(plain, {name: found[name] for name in judged if name in stated})
     judged = [name for name in judged if name not in slips]
     turned = backwards({name: found[name] for name in judged if name not in own}, stated)
@@ -216,7 +216,7 @@ def _put_right(
         by = [-1.0 if j.name in turned else 1.0 for j in described.joints]
         for i, joint in enumerate(described.joints):
             share = scales[joint.name][r] if joint.name in scales else None
-            by[i] = share.value if share is not None and share.told else by[i]
+            by[i] = share.value if share is not None and share.identified else by[i]
         assert s.effort is not None
         out.append(replace(s, effort=s.effort / np.array(by)))
     return out
@@ -246,7 +246,7 @@ def of_channel(
             own[channel] = replace(own[channel], values=own[channel].values - known)
         residuals.append(own)
     floors = [{channel: f[channel]} if channel in f else {} for f in data.floors]
-    alone = Whitened(data.views, residuals, floors)
+    alone = Standardised(data.views, residuals, floors)
     return Evidence(
         excitations=evidence.excitations,
         data=alone,
@@ -261,8 +261,8 @@ def _residuals(view: MotionView, judged: Sequence[str]) -> Residuals:
     run, out = view.run, Residuals()
     left = view.effort - view.inertial
     for joint in judged:
-        row, told = view.row(joint), run.inner & ~view.impacts
+        row, apart = view.row(joint), run.inner & ~view.impacts
         out[channel_of(joint)] = Residual(left[:, [row]], view.in_motion(row))
         if run.load is not None and np.isfinite(run.load[:, row]).all():
-            out[between(joint)] = Residual(run.to_grid(run.load[:, [row]] - run.motor[:, [row]]), told)
+            out[between(joint)] = Residual(run.to_grid(run.load[:, [row]] - run.motor[:, [row]]), apart)
     return {channel: x for channel, x in out.items() if x.ok.sum() >= BLOCKS}

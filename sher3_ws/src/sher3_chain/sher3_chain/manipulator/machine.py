@@ -21,7 +21,7 @@ from sher3_diagnosis.machine import Policy
 from sher3_diagnosis.report.summary import UNJUDGED
 from sher3_diagnosis.verdict import Cause, Identified
 from sher3_effects import computed, pages
-from sher3_machines.intake.notes import told_once
+from sher3_machines.intake.notes import merged
 
 from sher3_chain.chain.machine import Chain
 from sher3_chain.joint.bounds import within_bounds
@@ -111,8 +111,8 @@ class Manipulator(Chain[ArmMotionEvidence]):
         if any(gap.significant for part in evidence for gap in localise(part)):
             return [law for law in laws if law.closed]
         late = [] if computed(LATE).id in without else [x for part in evidence for x in late_efforts(part)]
-        told = self.described.told
-        return [*laws, *(replace(x, causes=[acting_late(c, told) for c in x.causes]) for x in late)]
+        commanded = self.described.commanded
+        return [*laws, *(replace(x, causes=[acting_late(c, commanded) for c in x.causes]) for x in late)]
 
     def plan(self, evidence: ArmMotionEvidence) -> SearchPlan:
         """Return how the causes of each joint are looked for."""
@@ -138,13 +138,13 @@ class Manipulator(Chain[ArmMotionEvidence]):
     ) -> tuple[ArmMotionEvidence, list[Cause]]:
         """Fit friction again away from reversals; give forces of a joint with unknown gain in the recorded unit."""
         causes = requantified(evidence, attribution, causes)
-        causes = within_bounds(causes, attribution.told, self.effects(evidence))
-        told = zip(map(with_late_readings, causes), (term for term, _ in attribution.told), strict=True)
-        causes = [with_closure(of_a_sum(cause, term, self.model), term.shape) for cause, term in told]
+        causes = within_bounds(causes, attribution.named, self.effects(evidence))
+        terms = zip(map(with_late_readings, causes), (term for term, _ in attribution.named), strict=True)
+        causes = [with_closure(of_a_sum(cause, term, self.model), term.shape) for cause, term in terms]
         weak = {j.name for j in self.described.joints if j.by_its_law}
         alike = {e.id: (e.id, *e.indistinct) for e in self.effects(evidence)}
         causes = [with_hidden(c, alike[c.effect]) if c.actuator in weak and c.effect in alike else c for c in causes]
-        causes = [acting_late(cause, self.described.told) for cause in in_true_force(causes)]
+        causes = [acting_late(cause, self.described.commanded) for cause in in_true_force(causes)]
         own, same = evidence.shares, same_force()
         return evidence, [with_hidden(in_own_unit(c, RECORDED), same) if c.actuator in own else c for c in causes]
 
@@ -183,13 +183,13 @@ class Manipulator(Chain[ArmMotionEvidence]):
         notes += [*stop_notes(evidence), *timing_notes(finding.causes)]
         notes += change_notes(evidence, finding.attribution, self.parted(evidence))
         levels = [x for run in evidence.runs for x in level_notes(run, self.described.joints, evidence.judged)]
-        notes += told_once(levels, [run.name for run in evidence.runs])
+        notes += merged(levels, [run.name for run in evidence.runs])
         return [*notes, *slip_notes(evidence), *gain_notes(evidence), *confounding_notes(evidence)]
 
     def identified(self, evidence: ArmMotionEvidence) -> Sequence[Identified]:
         """Return the inertias that were found from the data; none in a unit that nobody made newton metres."""
         own = evidence.inertias is None or evidence.shares or evidence.scales
-        return [] if own or evidence.inertias is None else evidence.inertias.told(self.model)
+        return [] if own or evidence.inertias is None else evidence.inertias.by_place(self.model)
 
     def unjudged(self, finding: Finding[ArmMotionEvidence]) -> dict[Channel, str]:
         """Say where the floors of all joints eat their efforts."""
@@ -214,7 +214,7 @@ def gain_notes(evidence: ArmMotionEvidence) -> list[str]:
         "is looked for"
     ]
     for joint, share in evidence.shares.items():
-        if share.told:
+        if share.identified:
             low, high = share.interval
             text = f"{joint}: {share.value:.3g} recorded units per N m ({low:.3g} .. {high:.3g}), inertias as modelled"
             notes.append(text)
@@ -226,9 +226,11 @@ def gain_notes(evidence: ArmMotionEvidence) -> list[str]:
 def scale_note(evidence: ArmMotionEvidence, joint: str) -> str:
     """Return what was found of a gain that differs by run."""
     each = zip(evidence.runs, evidence.scales[joint], strict=True)
-    told = ", ".join(f"{run.name} {share.value:.4g}" if share.told else f"{run.name} not told" for run, share in each)
+    values = ", ".join(
+        f"{run.name} {share.value:.4g}" if share.identified else f"{run.name} not told" for run, share in each
+    )
     return (
-        f"{joint}: recorded units per newton metre, run by run, inertias as modelled: {told}; drive gain, weight and "
+        f"{joint}: recorded units per newton metre, run by run, inertias as modelled: {values}; drive gain, weight and "
         "payload are in them and are not looked for"
     )
 

@@ -36,8 +36,8 @@ def noise_of(position: Array, period: float) -> float:
     """
     power = float(np.sum(binom(ORDER, np.arange(ORDER + 1)) ** 2))
     bend = np.diff(position, ORDER)
-    told = GAUSSIAN * float(np.median(np.abs(bend))) / np.sqrt(power)
-    return min(told, noise_at_the_top(position))
+    size = GAUSSIAN * float(np.median(np.abs(bend))) / np.sqrt(power)
+    return min(size, noise_at_the_top(position))
 
 
 def noise_at_the_top(position: Array) -> float:
@@ -65,15 +65,15 @@ def cut_off(position: Array, period: float, most: float, free: bool = False) -> 
     """
     noise = noise_of(position, period)
     white = noise * np.random.default_rng(0).normal(size=len(position))
-    cut, told = most, most  # at no cut-off is there an acceleration to be told: none is worth the samples it costs
+    cut, highest = most, most  # at no cut-off is there an acceleration to be told: none is worth the samples it costs
     while cut > SLOWEST_CUT:
         found, false = (_acceleration(x, period, cut) for x in (position, white))
         if np.var(false) <= NOISE_SHARE * np.var(found):
-            told = cut if told == most else told
+            highest = cut if highest == most else highest
             if not free or np.var(false) <= EATEN**2 * np.var(_without_weight(found, position, period, cut)):
                 return cut
         cut *= STEP
-    return told
+    return highest
 
 
 def _without_weight(acceleration: Array, position: Array, period: float, cut: float) -> Array:

@@ -49,7 +49,7 @@ class Share(NamedTuple):
         and an arm that hangs upside down that of all weights; friction that takes work as recorded then says that
         nothing was turned.
         """
-        if not self.told or (stated and abs(self.value) > SLIPPED):
+        if not self.identified or (stated and abs(self.value) > SLIPPED):
             return int(self.work > LEAST_EXCITED) - int(self.work < -LEAST_EXCITED)
         if not self.backwards:
             return 1
@@ -59,7 +59,7 @@ class Share(NamedTuple):
     def off(self, most: float) -> bool:
         """Return whether the share is surely more than `most`, or less than a fifth."""
         size = abs(self.value)
-        return self.told and size > SURELY * self.error and not 1.0 / SLIPPED < size < most
+        return self.identified and size > SURELY * self.error and not 1.0 / SLIPPED < size < most
 
     @property
     def slipped(self) -> bool:
@@ -67,7 +67,7 @@ class Share(NamedTuple):
         return self.off(SLIPPED)
 
     @property
-    def told(self) -> bool:
+    def identified(self) -> bool:
         """Whether the motion tells it."""
         return self.value != 0.0
 
@@ -83,12 +83,12 @@ def share_in(x: Array, y: Array) -> Share:
         return Share(0.0, np.inf, False)
     draws, found = _left_out(x, y), solve(x.T @ x, x.T @ y)
     error = float(standard_error(draws[:, 0]))
-    told = abs(float(found[0])) > LEAST_EXCITED * error
+    identified = abs(float(found[0])) > LEAST_EXCITED * error
     speed = x[:, 1]
     lost = draws[:, 1] * (speed @ speed) + draws[:, 2] * (speed @ x[:, 2])
     work = float(lost.mean()) / max(float(standard_error(lost)), float(np.finfo(float).tiny))
-    backwards = bool(found[0] < 0.0) if told else work < -LEAST_EXCITED
-    return Share(float(found[0]) if told else 0.0, error, backwards, work)
+    backwards = bool(found[0] < 0.0) if identified else work < -LEAST_EXCITED
+    return Share(float(found[0]) if identified else 0.0, error, backwards, work)
 
 
 def _left_out(x: Array, y: Array) -> Array:

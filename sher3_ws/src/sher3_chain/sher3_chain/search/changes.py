@@ -18,8 +18,8 @@ from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.effect import Effect, Shape, Signature
 from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.fit.fitting import Fit, Term, fit, make_term
+from sher3_diagnosis.fit.standardised import Standardised
 from sher3_diagnosis.fit.term import again
-from sher3_diagnosis.fit.whitened import Whitened
 from sher3_diagnosis.thresholds import NEEDED, PARSIMONY, RIVAL
 from sher3_diagnosis.words import lower, place, quantity
 
@@ -105,7 +105,9 @@ def of_runs(evidence: E, views: frozenset[int]) -> E:
     """Return the evidence of some runs alone, given by the identity of their views."""
     data = evidence.data
     kept = [r for r, view in enumerate(data.views) if id(view) in views]
-    part = Whitened([data.views[r] for r in kept], [data.residuals[r] for r in kept], [data.floors[r] for r in kept])
+    part = Standardised(
+        [data.views[r] for r in kept], [data.residuals[r] for r in kept], [data.floors[r] for r in kept]
+    )
     names, nuisance = [evidence.excitations[r] for r in kept], again(part, evidence.nuisance)
     return replace(evidence, excitations=names, data=part, nuisance=nuisance)
 
@@ -260,18 +262,18 @@ def _least_change(evidence: Evidence, found: Fit, index: int, views: frozenset[i
     if name is None:
         return ""
     size = float(f"{abs(moved[name] - zero[name]):.2g}")
-    return f"{lower(term.effect.id)} on {place(term.site)}, {name} by {_told(evidence, term, name, size)}"
+    return f"{lower(term.effect.id)} on {place(term.site)}, {name} by {_sized(evidence, term, name, size)}"
 
 
 def _in_words(evidence: Evidence, found: Fit, index: int) -> str:
     term = found.terms[index]
     values = term.effect.parameters(term.shape, found.of(index))
     fitted = [n for n in values if n not in term.shape] or list(values)
-    sizes = [f"{n.replace('_', ' ')} {'+' * (values[n] > 0.0)}{_told(evidence, term, n, values[n])}" for n in fitted]
+    sizes = [f"{n.replace('_', ' ')} {'+' * (values[n] > 0.0)}{_sized(evidence, term, n, values[n])}" for n in fitted]
     return f"{lower(term.effect.id)} on {place(term.site)}: {', '.join(sizes)}"
 
 
-def _told(evidence: Evidence, term: Term, name: str, value: float) -> str:
+def _sized(evidence: Evidence, term: Term, name: str, value: float) -> str:
     """Return a parameter with its unit."""
     return quantity(
         value, evidence.own_unit(term.effect.unit(name, term.site, term.site in evidence.rotary), term.site)

@@ -19,8 +19,8 @@ from sher3_diagnosis.channel import Channel, Mask, Residual
 from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.filter import BANDWIDTH
 from sher3_diagnosis.fit.fitting import fit, make_term
+from sher3_diagnosis.fit.standardised import Standardised
 from sher3_diagnosis.fit.term import again
-from sher3_diagnosis.fit.whitened import Whitened
 from sher3_diagnosis.quantify.parameters import parameters
 from sher3_diagnosis.verdict import Cause, Parameter
 from sher3_effects import pages
@@ -53,8 +53,8 @@ def requantified(evidence: Evidence, attribution: Attribution, causes: Sequence[
     for i, cause in zip(attribution.causes, causes, strict=True):
         if terms[i].site in dry and terms[i].effect.admissible(terms[i].shape, found.of(i)):
             new = parameters(away, found, i)
-            told = new if smeared else {n: _holding(p, new[n]) for n, p in cause.parameters.items() if n in new}
-            cause = cause.model_copy(update={"parameters": told})
+            refitted = new if smeared else {n: _holding(p, new[n]) for n, p in cause.parameters.items() if n in new}
+            cause = cause.model_copy(update={"parameters": refitted})
         out.append(cause)
     return out
 
@@ -74,8 +74,8 @@ def with_unseen(evidence: Evidence, attribution: Attribution, causes: Sequence[C
             beside = fit(evidence.data, [*terms, make_term(evidence.data, viscous, term.site, {})])
             if beside.of(len(terms))[0] > 0.0 and term.effect.admissible(term.shape, beside.of(i)):
                 other = parameters(evidence, beside, i)["force"]
-                told = {**cause.parameters, "force": _holding(cause.parameters["force"], other)}
-                cause = cause.model_copy(update={"parameters": told})
+                widened = {**cause.parameters, "force": _holding(cause.parameters["force"], other)}
+                cause = cause.model_copy(update={"parameters": widened})
         out.append(cause)
     return out
 
@@ -94,7 +94,7 @@ def without_slow(evidence: E, sites: set[str]) -> E:
         {c: _fast(x, view, c) if c.actuator in sites else x for c, x in found.items()}
         for view, found in zip(data.views, data.residuals, strict=True)
     ]
-    return replace(evidence, data=Whitened(data.views, residuals, data.floors))
+    return replace(evidence, data=Standardised(data.views, residuals, data.floors))
 
 
 def _fast(residual: Residual, view: Any, channel: Channel) -> Residual:

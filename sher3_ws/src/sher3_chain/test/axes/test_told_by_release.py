@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from sher3_chain.axes.causes.told_by_release import told_by_release
+from sher3_chain.axes.causes.parted_by_release import parted_by_release
 from sher3_chain.axes.evidence import gather_axis
 from sher3_chain.axes.machine import facts_of
 from sher3_chain.axes.simulate import Law, simulate
@@ -43,10 +43,10 @@ def attributed(evidence, cause, rival):
 
 
 def test_a_rival_whose_motion_comes_nearer_takes_the_place(fallen):
-    found = told_by_release(fallen, attributed(fallen, "viscous_friction", "coulomb_friction"))
+    found = parted_by_release(fallen, attributed(fallen, "viscous_friction", "coulomb_friction"))
     assert [t.effect.id for t in found.fit.terms] == ["coulomb_friction"] and found.rivals == ((),)
 
 
 def test_a_cause_whose_motion_is_right_stays(fallen):
     given = attributed(fallen, "coulomb_friction", "viscous_friction")
-    assert told_by_release(fallen, given) is given
+    assert parted_by_release(fallen, given) is given

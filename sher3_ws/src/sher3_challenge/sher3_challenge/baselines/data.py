@@ -1,4 +1,4 @@
-"""What the baselines get: the whitened residuals of a diagnosis, its single fits of every effect, and joint traces."""
+"""What the baselines get: standardised residuals of a diagnosis, its single fits of every effect, and joint traces."""
 
 from __future__ import annotations
 

@@ -121,8 +121,8 @@ def updated(before: Calibration, observations: Sequence[Observation]) -> Calibra
     seen = examples_of(observations)
     cause = logistic(seen.causes, before.cause.classes, before.cause.inputs, FOREIGN, before.cause)
     gap = logistic([*seen.gaps, *ECHOES], before.gap.classes, before.gap.inputs, before=before.gap)
-    told = (*before.provenance, *provenance(observations, seen))
-    found = {"cause": cause, "gap": gap, "typical": typical(cause, seen.causes), "provenance": told}
+    records = (*before.provenance, *provenance(observations, seen))
+    found = {"cause": cause, "gap": gap, "typical": typical(cause, seen.causes), "provenance": records}
     return before.model_copy(update=found)
 
 
@@ -161,8 +161,8 @@ def provenance(observations: Sequence[Observation], seen: Examples) -> tuple[Pro
 
 def ends(observations: Sequence[Observation], plant: str, name: str) -> tuple[float, float] | None:
     """Return the least and the largest level of a plant's robots; None where its labels do not say."""
-    told = [o.truth["level"][name] for o in observations if o.plant == plant and "level" in o.truth]
-    return (min(told), max(told)) if told else None
+    levels = [o.truth["level"][name] for o in observations if o.plant == plant and "level" in o.truth]
+    return (min(levels), max(levels)) if levels else None
 
 
 def placed_among(calibration: Calibration, observations: Sequence[Observation]) -> Calibration:

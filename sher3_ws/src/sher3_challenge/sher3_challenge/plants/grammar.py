@@ -154,8 +154,8 @@ _CARRIERS = {PLAIN: "", DIRECTION: "_by_direction", EFFORT: "_by_force"}
 
 def _drawn() -> Catalogue:
     found = Catalogue()
-    for (where, (name, stage, places, sizes, carriers)), (follows, told) in product(_WHERE.items(), _SOURCES.items()):
-        source, remembers = told
+    for (where, (name, stage, places, sizes, carriers)), (follows, driver) in product(_WHERE.items(), _SOURCES.items()):
+        source, remembers = driver
         if source == PLACE and where in (ON_TIP, ON_SENSOR):
             continue  # what the tip does by the place of an axis is a mechanism's error
         also = ("transmission",) if where == ON_READING else ()

@@ -23,7 +23,7 @@ class Telling:
         self._stream = stream
         self._open = self._count = 0
         self._begun = 0.0
-        self._told = False
+        self._announced = False
 
     def begins(self) -> None:
         """Take note that a function is compiled from now on; others that it calls may be compiled meanwhile."""
@@ -36,16 +36,16 @@ class Telling:
             return
         if stream.isatty():
             stream.write(f"{CLEAR}compiling, once: {self._count} functions, {passed:.0f} s")
-        elif not self._told:
+        elif not self._announced:
             stream.write("sher3: compiling, once; the next start takes it from the cache\n")
-        self._told = True
+        self._announced = True
         stream.flush()
 
     def ended(self) -> None:
         """Take note that a function is compiled; the line goes with the last one."""
         self._open = max(0, self._open - 1)
         stream = self._stream or sys.stderr
-        if self._told and self._open == 0 and stream.isatty():
+        if self._announced and self._open == 0 and stream.isatty():
             stream.write(CLEAR)
             stream.flush()
 

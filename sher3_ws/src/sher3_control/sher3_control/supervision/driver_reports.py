@@ -30,9 +30,9 @@ def driver_stop(level: int, message: str, values: Pairs) -> Finding | None:
     """
     if level < ERROR:
         return None
-    told = dict(values)
-    reason = Reason.__members__.get(told.get("reason", ""), Reason.DRIVE_EMERGENCY)
-    harder = Action.__members__.get(told.get("action", ""), Action.NONE)
+    report = dict(values)
+    reason = Reason.__members__.get(report.get("reason", ""), Reason.DRIVE_EMERGENCY)
+    harder = Action.__members__.get(report.get("action", ""), Action.NONE)
     source = f"motor_driver: {message}"
     stop = f"{reason.name} stop ["
     key, number = next(((key, text) for key, text in values if key.startswith(stop)), (f"{stop}1]", "1 limit 0"))
@@ -45,9 +45,9 @@ def driver_stop(level: int, message: str, values: Pairs) -> Finding | None:
 
 def cycle_counts(values: Pairs) -> tuple[int, int] | None:
     """Return the cycles that were due, and those lost or too long, of a timing report; None for another report."""
-    told = dict(values)
+    report = dict(values)
     try:
-        lost = int(told["lost_cycles"])
-        return int(told["ticks"]) + lost, lost + int(told["overruns"])
+        lost = int(report["lost_cycles"])
+        return int(report["ticks"]) + lost, lost + int(report["overruns"])
     except (KeyError, ValueError):
         return None

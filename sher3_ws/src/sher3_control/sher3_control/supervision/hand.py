@@ -132,7 +132,7 @@ class HandDetector(PlainDetector):
             effort: of the drives (5,), N and N m.
             command: velocities that the axes were told a tick before (5,), m/s and rad/s.
         """
-        joints, told, touch, efforts = map(np.array, (q, command, contact, effort))
+        joints, commands, touch, efforts = map(np.array, (q, command, contact, effort))
         self._met = stamp
         span = seconds(stamp - self._last)
         if not math.isfinite(sum(contact) + sum(effort)):
@@ -143,11 +143,11 @@ class HandDetector(PlainDetector):
             self._felt = self._twice.channels(joints, touch, efforts)[0]
             self._motion.begin(joints)
             return
-        took, astray = self._motion.advance(span, joints, told)
+        took, astray = self._motion.advance(span, joints, commands)
         felt, held, jacobian = self._twice.channels(joints, touch, efforts - took)
         self._felt = self._felt + np.minimum(1.0, span / self._lag) * (felt - self._felt)
         asks = math.hypot(*contact[:3]) > self._force_deadband or math.hypot(*contact[3:]) > self._torque_deadband
-        moved = self._reach * (jacobian @ told) * span if asks else NOWHERE
+        moved = self._reach * (jacobian @ commands) * span if asks else NOWHERE
         if astray > self._settings.hand_astray:
             self._astray = stamp + nanoseconds(CALM)
         if stamp > self._astray:

@@ -26,11 +26,11 @@ class Pull:
     def __init__(self, kinematics: RobotKinematics, settings: ControlSettings) -> None:
         self._limit = settings.supervisor.hand_level
         self._twice = FeltTwice(kinematics, settings.supervisor.hand_arm)
-        self._told: deque[tuple[Vector, Vector]] = deque(maxlen=settings.tare.samples)
+        self._reports: deque[tuple[Vector, Vector]] = deque(maxlen=settings.tare.samples)
 
     def hear(self, reports: Iterable[JointSample]) -> None:
         """Take the drives' reports since the last call."""
-        self._told.extend((r.position, r.effort) for r in reports if r.position is not None and r.effort is not None)
+        self._reports.extend((r.position, r.effort) for r in reports if r.position is not None and r.effort is not None)
 
     def require_none(self) -> None:
         """Judge the mean of the newest reports, as many as a tare takes, the robot at rest and its drives in power.
@@ -38,9 +38,9 @@ class Pull:
         Raises:
             TareRefused: they hold more than the weights.
         """
-        if not self._told:
+        if not self._reports:
             return
-        q, effort = np.mean(self._told, axis=0)
+        q, effort = np.mean(self._reports, axis=0)
         holds = self._twice.channels(q, np.zeros(6), effort)[1]
         size = max(float(np.linalg.norm(holds[:LEGS])), float(np.linalg.norm(holds[LEGS:AXES])))
         if not size <= self._limit:

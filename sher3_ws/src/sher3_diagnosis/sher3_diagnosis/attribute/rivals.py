@@ -83,7 +83,7 @@ class Attribution:
         return range(self.nuisance, len(self.fit.terms))
 
     @property
-    def told(self) -> list[tuple[Term, Array]]:
+    def named(self) -> list[tuple[Term, Array]]:
         """The term of each cause with its coefficients, (p,)."""
         return [(self.fit.terms[i], self.fit.of(i)) for i in self.causes]
 

@@ -10,8 +10,8 @@ from itertools import combinations
 from sher3_common.progress import Say
 
 from sher3_diagnosis.attribute.candidates import Candidates
+from sher3_diagnosis.attribute.constancy import constancy_of
 from sher3_diagnosis.attribute.rivals import RANKED, Attribution, with_rivals
-from sher3_diagnosis.attribute.steadiness import steadiness_of
 from sher3_diagnosis.attribute.ties import TIE
 from sher3_diagnosis.attribute.together import Left as Left
 from sher3_diagnosis.attribute.together import pruned
@@ -55,7 +55,7 @@ def attribute(
         chosen = list(current.terms)
     current = pruned(evidence, current, left_over, relative=start is not None)
     found = with_rivals(candidates, current)
-    steady = _steadier(evidence, found)
+    steady = _more_constant(evidence, found)
     return found if steady is None else with_rivals(candidates, steady)
 
 
@@ -97,14 +97,14 @@ def _pair(
     return best
 
 
-def _steadier(evidence: Evidence, found: Attribution) -> Fit | None:
+def _more_constant(evidence: Evidence, found: Attribution) -> Fit | None:
     """Where a cause changes size between excitations and a rival does not, the fit with that rival in its place."""
     for i in found.causes:
-        if steadiness_of(evidence, found.fit, i).constant:
+        if constancy_of(evidence, found.fit, i).constant:
             continue
         for rival in found.rivals[i]:
             terms = [*found.fit.terms[:i], rival.terms[-1], *found.fit.terms[i + 1 :]]
             trial = fit(evidence.data, terms)
-            if trial.admissible and steadiness_of(evidence, trial, i).constant:
+            if trial.admissible and constancy_of(evidence, trial, i).constant:
                 return trial
     return None

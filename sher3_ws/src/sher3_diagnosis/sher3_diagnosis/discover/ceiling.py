@@ -38,7 +38,7 @@ def inputs(columns: Columns) -> list[Feature]:
 
 
 def predicted(columns: Columns, component: int, folds: Sequence[Sequence[int]]) -> list[Array]:
-    """Return what the trees predict of a component in every run, from the runs of the other folds; whitened (N,)."""
+    """Return what the trees predict of a component in every run from the other folds' runs; standardised (N,)."""
     features, runs = inputs(columns), range(len(columns.target))
     x = np.vstack([np.column_stack([columns.at_samples(r, f) for f in features]) for r in runs])
     y, lengths = np.concatenate(columns.target)[:, component], [len(t) for t in columns.target]

@@ -104,7 +104,7 @@ def columns(evidence: Evidence, channels: Sequence[Channel], target: Sequence[Ma
     Args:
         evidence: of the part.
         channels: of one place, with the same components.
-        target: per run and channel, (N,) whitened: the gap that is to be explained.
+        target: per run and channel, (N,) standardised: the gap that is to be explained.
     """
     shown = [r for r, t in enumerate(target) if any(c in t for c in channels)]
     data = evidence.data

@@ -114,7 +114,7 @@ def discover_at(evidence: Evidence, channel: Channel, say: Say = silent) -> Disc
     """
     channels = [c for c in evidence.channels if c == channel or {c.stage, channel.stage} <= set(AT_TIP)]
     channels.sort(key=lambda c: c != channel)
-    evidence = wholly_told(evidence, channels)
+    evidence = wholly_determined(evidence, channels)
     target = evidence.data.target
     shown = sum(any(c in t for c in channels) for t in target)
     if shown < MIN_RUNS:
@@ -142,14 +142,14 @@ def discover_at(evidence: Evidence, channel: Channel, say: Say = silent) -> Disc
     if not formula or closure.low is None or closure.low <= 0.0:
         return Discovery(channels, ceiling=ceiling, folds=len(parts), note="no formula holds on runs left out")
     terms = _terms(found, formula, again)
-    told = [sentence(t, channel, found.quantities[0]) for t in terms]
-    return Discovery(channels, terms, closure, ceiling, told, len(parts))
+    sentences = [sentence(t, channel, found.quantities[0]) for t in terms]
+    return Discovery(channels, terms, closure, ceiling, sentences, len(parts))
 
 
-def wholly_told(evidence: Evidence, channels: Sequence[Channel]) -> Evidence:
+def wholly_determined(evidence: Evidence, channels: Sequence[Channel]) -> Evidence:
     """Return the evidence without the samples of these channels that tell a part alone: their inputs are not known."""
     residuals = [
-        {c: x.wholly_told() if c in channels else x for c, x in run.items()} for run in evidence.data.residuals
+        {c: x.wholly_determined() if c in channels else x for c, x in run.items()} for run in evidence.data.residuals
     ]
     data = type(evidence.data)(evidence.data.views, residuals, evidence.floors)
     return Evidence(evidence.excitations, data, evidence.units, evidence.places)
@@ -193,7 +193,7 @@ def _zeros(found: Columns) -> list[Array]:
 
 
 def _predicted(found: Columns, run: int, formula: Formula) -> Array:
-    """Return what a formula makes of a run, whitened (N, d)."""
+    """Return what a formula makes of a run, standardised (N, d)."""
     out = np.zeros_like(found.target[run])
     for component, feature, value in formula:
         out[:, component] += found.design(run, [feature])[:, 0] * value / found.floor(run, component)
@@ -201,7 +201,7 @@ def _predicted(found: Columns, run: int, formula: Formula) -> Array:
 
 
 def _closure(found: Columns, added: Sequence[Array]) -> Interval:
-    """Closure of the whitened gap, all components together, by predictions for runs left out."""
+    """Closure of the standardised gap, all components together, by predictions for runs left out."""
     rows = [[np.mean(t**2), np.mean((t - p) ** 2), 1.0] for t, p in zip(found.target, added, strict=True)]
     return interval_of(np.array(rows))
 

@@ -101,7 +101,7 @@ class Search:
     groups: Sequence[Group]
 
     def target(self, run: int) -> Array:
-        """Whitened target (N,)."""
+        """Standardised target (N,)."""
         return self.columns.target[run][:, self.component]
 
     def moments(self, features: Sequence[Feature]) -> Moments:
@@ -121,7 +121,7 @@ class Search:
         return float(self.moments(features).losses([], np.arange(len(features))[None])[0])
 
     def left(self, groups: Sequence[Group]) -> list[Array]:
-        """What a formula leaves in every run, whitened."""
+        """What a formula leaves in every run, standardised."""
         features = [f for g in groups for f in g]
         if not features:
             return [self.target(r) for r in self.runs]

@@ -26,7 +26,7 @@ def suggestions(columns: Columns, runs: Sequence[int], component: int, left: Seq
         columns: of the place.
         runs: that are looked at.
         component: of the residual.
-        left: per run, what is left, whitened (N,).
+        left: per run, what is left, standardised (N,).
     """
     out = []
     for name, q in columns.quantities[runs[0]].items():

@@ -1,1 +1,1 @@
-"""Least squares over terms in whitened residuals: what every fit of the diagnosis is made of."""
+"""Least squares over terms in standardised residuals: what every fit of the diagnosis is made of."""

@@ -1,4 +1,4 @@
-"""Fitting effects to residuals: whitened least squares with an exact leave-one-run-out loss.
+"""Fitting effects to residuals: standardised least squares with an exact leave-one-run-out loss.
 
 For a given shape an effect is linear in its coefficients. Leaving a run out of the normal equations is then a
 subtraction, and the loss of every run under the coefficients of all others costs a small solve. No score of a fit
@@ -17,8 +17,8 @@ import numpy as np
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.fit.gram import products
 from sher3_diagnosis.fit.solving import RIDGE, solve, solve_within
+from sher3_diagnosis.fit.standardised import Standardised
 from sher3_diagnosis.fit.term import Term, make_term
-from sher3_diagnosis.fit.whitened import Whitened
 
 __all__ = ["RIDGE", "Fit", "Term", "fit", "make_term", "solve"]
 
@@ -89,7 +89,7 @@ class _Part:
         return float(np.sqrt(max(own, 0.0) / max(float(x @ self.normal @ x), np.finfo(float).tiny)))
 
 
-def fit(data: Whitened, terms: Sequence[Term]) -> Fit:
+def fit(data: Standardised, terms: Sequence[Term]) -> Fit:
     """Fit all terms together and score every run with the coefficients of the others."""
     groups = connected(terms)
     parts = tuple(_part(data, tuple([terms[i] for i in members])) for members in groups)
@@ -124,7 +124,7 @@ def connected(terms: Sequence[Term]) -> list[list[int]]:
     return [sorted(members) for members in (*apart, *{id(x): x for x in group.values()}.values())]
 
 
-def _part(data: Whitened, terms: tuple[Term, ...]) -> _Part:
+def _part(data: Standardised, terms: tuple[Term, ...]) -> _Part:
     """Fit terms that share channels; the same terms are fitted once."""
     key = tuple(id(t) for t in terms)
     if key not in data.fits:
@@ -133,7 +133,7 @@ def _part(data: Whitened, terms: tuple[Term, ...]) -> _Part:
     return found
 
 
-def _fit_part(data: Whitened, terms: tuple[Term, ...]) -> _Part:
+def _fit_part(data: Standardised, terms: tuple[Term, ...]) -> _Part:
     pieces = {c: products(data, terms, c) for c in sorted({c for t in terms for c in t.channels})}
     runs, limit = len(data.target), np.array([t.limit for t in terms for _ in range(t.width)])
     normal = sum([n for n, _, _ in pieces.values()], np.zeros((runs, len(limit), len(limit))))
@@ -149,8 +149,8 @@ def _fit_part(data: Whitened, terms: tuple[Term, ...]) -> _Part:
     loss: dict[tuple[int, Channel], float] = {}
     for c, (a, b, energy) in pieces.items():
         held = energy - 2.0 * np.einsum("rp,rp->r", held_out, b) + np.einsum("rp,rpq,rq->r", held_out, a, held_out)
-        told = enumerate(np.fmax(held, 0.0).tolist())
-        loss |= {(r, c): x for r, x in told if (r, c) in data.null_loss}
+        per_run = enumerate(np.fmax(held, 0.0).tolist())
+        loss |= {(r, c): x for r, x in per_run if (r, c) in data.null_loss}
     return _Part(terms, solved[0], held_out, loss, total)
 
 

@@ -13,8 +13,8 @@ from typing import NamedTuple
 import numpy as np
 
 from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.fit.standardised import Standardised
 from sher3_diagnosis.fit.term import Term
-from sher3_diagnosis.fit.whitened import Whitened
 
 Products = tuple[Array, Array, Array]
 """Normal matrices (runs, p, p), right sides (runs, p) and energies (runs,)."""
@@ -52,7 +52,7 @@ class Step(NamedTuple):
     found: Products
 
 
-def products(data: Whitened, terms: Sequence[Term], channel: Channel) -> Products:
+def products(data: Standardised, terms: Sequence[Term], channel: Channel) -> Products:
     """Return the normal matrices, right sides and energies of a channel.
 
     The energy is that of the target less the fixed parts of all terms; runs without the channel have zeros. Those of
@@ -71,13 +71,13 @@ def products(data: Whitened, terms: Sequence[Term], channel: Channel) -> Product
     return normal, right, np.maximum(energy, 0.0)
 
 
-def _without_terms(data: Whitened, channel: Channel) -> Products:
+def _without_terms(data: Standardised, channel: Channel) -> Products:
     runs = len(data.target)
     energy = np.array([data.null_loss.get((r, channel), 0.0) for r in range(runs)])
     return np.zeros((runs, 0, 0)), np.zeros((runs, 0)), energy
 
 
-def _extended(data: Whitened, trail: Sequence[Step], new: Blocks) -> Products:
+def _extended(data: Standardised, trail: Sequence[Step], new: Blocks) -> Products:
     """Return the products of the terms of a trail and one more."""
     before, term, channel = trail[-1].found, new.term, new.channel
     runs, q = before[1].shape
@@ -107,7 +107,7 @@ def _extended(data: Whitened, trail: Sequence[Step], new: Blocks) -> Products:
     return normal, right, energy
 
 
-def _with_target(data: Whitened, blocks: Blocks) -> Array:
+def _with_target(data: Standardised, blocks: Blocks) -> Array:
     """Products of a term with the target, (runs, width + 1)."""
     term, key = blocks.term, (id(data), blocks.channel)
     if key not in term.products:

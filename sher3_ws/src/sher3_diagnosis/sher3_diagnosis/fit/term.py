@@ -12,7 +12,7 @@ import numpy as np
 
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.effect import Effect, Shape, Signature
-from sher3_diagnosis.fit.whitened import Whitened
+from sher3_diagnosis.fit.standardised import Standardised
 
 
 @dataclass(frozen=True)
@@ -20,8 +20,8 @@ class Term:
     """An effect at a site with a shape, evaluated on every run.
 
     Attributes:
-        columns: per run and channel (N, p) whitened.
-        fixed: per run and channel (N,) whitened.
+        columns: per run and channel (N, p) standardised.
+        fixed: per run and channel (N,) standardised.
         width: number of coefficients p.
         limit: largest magnitude of a coefficient, in standard deviations: each is then expected to be normal with a
             standard deviation of one. Infinite for coefficients of which nothing is known beforehand.
@@ -49,14 +49,14 @@ class Term:
 
     @cached_property
     def samples(self) -> list[dict[Channel, int]]:
-        """Whitened samples per run and channel."""
+        """Standardised samples per run and channel."""
         return [
             {c: len(v) for part in (x, f) for c, v in part.items()}
             for x, f in zip(self.columns, self.fixed, strict=True)
         ]
 
     def adds(self, run: int, channel: Channel, coefficients: Array) -> Array | float:
-        """Return what the term adds to a channel of a run with coefficients (p,), whitened (N,); 0 where it shows not.
+        """Return what the term adds to a channel of a run with coefficients (p,), standardised (N,); else 0.
 
         A run may have fewer columns than others: the coefficients of those that it lacks are of no matter there.
         """
@@ -79,7 +79,7 @@ class Term:
         )
 
 
-def make_term(data: Whitened, effect: Effect, site: str, shape: Shape) -> Term:
+def make_term(data: Standardised, effect: Effect, site: str, shape: Shape) -> Term:
     """Evaluate an effect's signature on every run."""
     columns: list[dict[Channel, Array]] = []
     fixed: list[dict[Channel, Array]] = []
@@ -96,6 +96,6 @@ def make_term(data: Whitened, effect: Effect, site: str, shape: Shape) -> Term:
     return Term(effect, site, shape, columns, fixed, width)
 
 
-def again(data: Whitened, terms: Sequence[Term]) -> tuple[Term, ...]:
+def again(data: Standardised, terms: Sequence[Term]) -> tuple[Term, ...]:
     """Return terms evaluated on other data of the same machine, each with its limit."""
     return tuple(replace(make_term(data, t.effect, t.site, t.shape), limit=t.limit) for t in terms)

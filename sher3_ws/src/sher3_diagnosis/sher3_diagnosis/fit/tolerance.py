@@ -17,8 +17,8 @@ from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.effect import Effect, Shape, Signature
 from sher3_diagnosis.fit.fitting import Fit, connected
 from sher3_diagnosis.fit.gram import products
+from sher3_diagnosis.fit.standardised import Standardised
 from sher3_diagnosis.fit.term import Term, make_term
-from sher3_diagnosis.fit.whitened import Whitened
 from sher3_diagnosis.thresholds import VISIBLE, WITHIN
 from sher3_diagnosis.verdict import Within
 
@@ -70,13 +70,13 @@ class AsBuilt(Effect):
 
 
 def tolerance(
-    data: Whitened, effect: Effect, site: str, shape: Shape, limits: dict[str, tuple[float, str]]
+    data: Standardised, effect: Effect, site: str, shape: Shape, limits: dict[str, tuple[float, str]]
 ) -> Tolerance:
     """Evaluate one deviation on every run."""
     return Tolerance(make_term(data, effect, site, shape), limits)
 
 
-def as_built(data: Whitened, members: Sequence[Tolerance]) -> tuple[Term, ...]:
+def as_built(data: Standardised, members: Sequence[Tolerance]) -> tuple[Term, ...]:
     """Return one term for each group of deviations that share channels, in principal directions that the data see."""
     shown = [m for m in members if m.term.width == len(m.limits)]
     groups = connected([m.term for m in shown])
@@ -84,7 +84,7 @@ def as_built(data: Whitened, members: Sequence[Tolerance]) -> tuple[Term, ...]:
     return tuple(t for t in found if t is not None)
 
 
-def _principal(data: Whitened, members: list[Tolerance]) -> Term | None:
+def _principal(data: Standardised, members: list[Tolerance]) -> Term | None:
     terms = [m.term for m in members]
     channels = sorted({c for t in terms for c in t.channels})
     normal = np.sum([products(data, terms, c)[0].sum(axis=0) for c in channels], axis=0)
@@ -110,7 +110,7 @@ def _principal(data: Whitened, members: list[Tolerance]) -> Term | None:
     return Term(effect, site, {}, columns, [{} for _ in columns], basis.shape[1], limit=SIGMAS)
 
 
-def within(data: Whitened, found: Fit) -> list[Within]:
+def within(data: Standardised, found: Fit) -> list[Within]:
     """Return the deviations that a fit measured: those that differ from zero by more than their uncertainty."""
     out: list[Within] = []
     for i, term in enumerate(found.terms):

@@ -49,9 +49,9 @@ def place_of(finding: Finding, items: Sequence[Judged], channel: Channel, where:
         _bet(finding, causes, choice, p, channel, quantified=p >= QUANTIFIED or p == best) for choice, p in listed
     ]
     outside = _plain(OUTSIDE, 1.0 - prod(1.0 - j.outside for j in causes))
-    told = [j.typicality for j in causes if j.typicality is not None]
+    typicalities = [j.typicality for j in causes if j.typicality is not None]
     nothing = _plain(NO_GAP, prod(j.no_gap for j in causes))
-    return placed(where, [*answers, outside, nothing], min(told, default=None))
+    return placed(where, [*answers, outside, nothing], min(typicalities, default=None))
 
 
 def touching(finding: Finding, items: Sequence[Judged], channel: Channel) -> list[Judged]:
@@ -69,7 +69,7 @@ def exact_place(stage: ExactFinding, known: float) -> Place:
     return placed(stage.where, answers)
 
 
-def untold_place(where: Where) -> Place:
+def undecided_place(where: Where) -> Place:
     """Return the bets at a place that cannot be judged: nothing speaks for a gap, and nothing against it."""
     return placed(where, [_plain(OUTSIDE, 0.5), _plain(NO_GAP, 0.5)])
 

@@ -21,7 +21,7 @@ def significant_causes(
     Such a cause is worth next to nothing, and an effect of another family, where nobody can tell which, is worth as
     much: what the law of a larger cause leaves out.
     """
-    for i in reversed([i for i in attribution.causes if untold(evidence, attribution, i)]):
+    for i in reversed([i for i in attribution.causes if insignificant(evidence, attribution, i)]):
         if len(attribution.causes) > 1:
             fewer = attribution.kept(evidence, [k for k in attribution.causes if k != i])
             if set(left(fewer.fit)) <= set(left(attribution.fit)):
@@ -29,7 +29,7 @@ def significant_causes(
     return attribution
 
 
-def untold(evidence: Evidence, attribution: Attribution, index: int) -> bool:
+def insignificant(evidence: Evidence, attribution: Attribution, index: int) -> bool:
     """Return whether a cause explains less than the error of laws, and a rival of another family explains as much."""
     family = attribution.fit.terms[index].effect.family
     others = any(f.terms[-1].effect.family != family for f in attribution.rivals[index])

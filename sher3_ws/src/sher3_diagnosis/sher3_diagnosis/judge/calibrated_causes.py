@@ -20,9 +20,10 @@ def weighed(findings: Sequence[Finding], calibration: Calibration, own_level: bo
     """Judge all causes and gaps of a machine; keep those causes that are named, and the gaps that need an answer."""
     items = [[(f, i) for i in items_of(f)] for f in findings]
     every = [x for own in items for x in own]
-    told = iter(judged_together([i for _, i in every], [_closure(*x) for x in every], calibration, own_level))
+    judgements = iter(judged_together([i for _, i in every], [_closure(*x) for x in every], calibration, own_level))
     return [
-        _kept_of(f, [next(told) for _ in own], calibration.reach, costs) for f, own in zip(findings, items, strict=True)
+        _kept_of(f, [next(judgements) for _ in own], calibration.reach, costs)
+        for f, own in zip(findings, items, strict=True)
     ]
 
 

@@ -31,14 +31,14 @@ def _cause(evidence: Evidence, attribution: Attribution, index: int) -> Cause:
     without = without_term(evidence, found, index)
     channel = shown_at(evidence, term, without, found)
     moving = attribution.moving
-    told = (evidence, found) if moving is None else (moving.evidence, moving.fit)
+    quantified = (evidence, found) if moving is None else (moving.evidence, moving.fit)
     rivals = [f.terms[-1].effect.id for f in attribution.rivals[index]]
     return Cause(
         effect=term.effect.id,
         family=term.effect.family,
         stage=term.effect.stage_at(channel),
         actuator=term.site,
-        parameters=over_rivals(attribution, index, parameters(*told, index)),
+        parameters=over_rivals(attribution, index, parameters(*quantified, index)),
         closure=closure(evidence, channel, without, found),
         rivals=list(dict.fromkeys(rivals)),
         condition=term.effect.condition,

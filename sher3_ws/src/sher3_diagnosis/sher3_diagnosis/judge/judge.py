@@ -9,7 +9,7 @@ import numpy as np
 
 from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.finding import LIBRARY, ExactFinding, Finding
-from sher3_diagnosis.judge.bets import closed, exact_place, place_of, untold_place
+from sher3_diagnosis.judge.bets import closed, exact_place, place_of, undecided_place
 from sher3_diagnosis.judge.calibration.calibration import in_force
 from sher3_diagnosis.judge.calibration.typical import RARE
 from sher3_diagnosis.judge.causes import ordered, places_of
@@ -43,7 +43,7 @@ def judge(
     gaps = [f.significant for f in findings]
     located = _located(findings)
     places = [exact_place(e, p) for e, p in stages] + _bets(located) if exact or any(gaps) else _unlikely(findings)
-    told: dict[str, Any] = {
+    common: dict[str, Any] = {
         "places": places,
         "within_tolerance": [w for f in findings for w in machine.within(f)],
         "identified": [x for f in findings for x in machine.identified(f.evidence)],
@@ -52,7 +52,7 @@ def judge(
         "notes": [*notes, *_unusual(places), *(n for f in findings for n in open_sizes(f.attribution, f.causes))],
     }
     if not any(gaps) and not exact:
-        return _hidden(machine, findings, told) or Verdict(status="no_gap", **told)
+        return _hidden(machine, findings, common) or Verdict(status="no_gap", **common)
     causes = ordered(causes, list(findings))
     where = [f.where for f in exact] + [w for _, _, w in located]
     stage, residual = _first(findings, gaps, exact, where[0].gap)
@@ -67,14 +67,14 @@ def judge(
         residual=residual,
         unexplained=unexplained,
         next_experiment=next(proposals, None),
-        **told,
+        **common,
     )
 
 
 Located = tuple[Finding, Channel, Where]
 
 
-def _hidden(machine: Machine, findings: Sequence[Finding], told: dict[str, Any]) -> Verdict | None:
+def _hidden(machine: Machine, findings: Sequence[Finding], common: dict[str, Any]) -> Verdict | None:
     """Return the verdict on parts of which no gap is no finding, since their floor hides one; None without any."""
     why = [(f, machine.unjudged(f)) for f in findings]
     hidden = [
@@ -85,8 +85,8 @@ def _hidden(machine: Machine, findings: Sequence[Finding], told: dict[str, Any])
     channel, _, reason = hidden[0]
     where = [w for _, w, _ in hidden]
     unexplained = Unexplained(stage=channel.stage, actuator=channel.actuator, signature=reason)
-    told = {**told, "places": [untold_place(w) for w in where]}
-    return Verdict(status="outside_library", where=where, unexplained=unexplained, **told)
+    common = {**common, "places": [undecided_place(w) for w in where]}
+    return Verdict(status="outside_library", where=where, unexplained=unexplained, **common)
 
 
 def _located(findings: Sequence[Finding]) -> list[Located]:

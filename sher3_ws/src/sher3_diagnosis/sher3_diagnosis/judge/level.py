@@ -40,13 +40,13 @@ SHARES = ("left", "stray")
 """Evidence that is a share of the gap."""
 
 
-def levels_told(items: Sequence[Item]) -> list[Array]:
+def level_weights(items: Sequence[Item]) -> list[Array]:
     """Return for each cause or gap the weight of each level, as the causes of the other places tell, (k,)."""
     left: dict[Channel, list[float]] = {}
     for item in (i for i in items if i.index is not None):
         left.setdefault(item.channel, []).append(math.log(of_whole(at_level(item.numbers, USUAL))))
     likely = {channel: _likely(float(np.mean(x))) for channel, x in left.items()}
-    return [_told([x for channel, x in likely.items() if channel != item.channel]) for item in items]
+    return [_normalised([x for channel, x in likely.items() if channel != item.channel]) for item in items]
 
 
 def at_level(numbers: Mapping[str, float], level: float) -> dict[str, float]:
@@ -75,7 +75,7 @@ def lawful(numbers: Mapping[str, float]) -> float:
     return float((even**2 / (left * law)) ** exponent)
 
 
-def _told(likely: Sequence[Array]) -> Array:
+def _normalised(likely: Sequence[Array]) -> Array:
     weight = np.prod([np.ones(len(LEVELS)), *likely], axis=0)
     return np.asarray(weight / weight.sum())
 

@@ -78,7 +78,7 @@ def _bears(evidence: Evidence, attribution: Attribution, index: int, causes: Map
     A weight that is somewhat off is not told from the rest of the model; a friction is not told without it.
     """
     term = attribution.fit.terms[index]
-    if term.effect.told_by:
+    if term.effect.extends_by:
         return False  # a simpler law takes its place
     sized = [i for i in attribution.causes if i != index and not _small(attribution, i, causes)]
     fewer = without_term(evidence, attribution.fit, index)
@@ -99,9 +99,9 @@ def says_nothing(evidence: Evidence, found: Fit, index: int, cause: Cause) -> bo
 
 def of_no_size(term: Term, coefficients: Array, cause: Cause) -> bool:
     """Return whether each size of a cause may be zero, or any number that tells it from a simpler effect may."""
-    told = {n: p for n, p in cause.parameters.items() if p.low is not None and p.high is not None}
-    sizes = [told[n] for n in sizes_of(term, coefficients) if n in told]
-    beyond = [told[n] for n in term.effect.told_by if n in told]
+    bounded = {n: p for n, p in cause.parameters.items() if p.low is not None and p.high is not None}
+    sizes = [bounded[n] for n in sizes_of(term, coefficients) if n in bounded]
+    beyond = [bounded[n] for n in term.effect.extends_by if n in bounded]
     return (bool(sizes) and all(map(_holds_zero, sizes))) or any(map(_holds_zero, beyond))
 
 
@@ -113,8 +113,10 @@ def without_open_sizes(attribution: Attribution, causes: Sequence[Cause]) -> lis
     out = []
     for i, cause in zip(attribution.causes, causes, strict=True):
         sizes = sizes_of(attribution.fit.terms[i], attribution.fit.of(i))
-        told = {n: p.model_copy(update={"means": OPEN}) for n, p in cause.parameters.items() if n in sizes and _open(p)}
-        out.append(cause.model_copy(update={"parameters": {**cause.parameters, **told}}))
+        opened = {
+            n: p.model_copy(update={"means": OPEN}) for n, p in cause.parameters.items() if n in sizes and _open(p)
+        }
+        out.append(cause.model_copy(update={"parameters": {**cause.parameters, **opened}}))
     return out
 
 

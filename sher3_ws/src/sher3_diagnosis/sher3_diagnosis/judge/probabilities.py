@@ -13,7 +13,7 @@ from sher3_diagnosis.finding import LIBRARY, NO_GAP, OUTSIDE, ExactFinding, Item
 from sher3_diagnosis.judge.calibration.calibration import Calibration
 from sher3_diagnosis.judge.calibration.typical import trust
 from sher3_diagnosis.judge.evidence.scales import scaled_cause, scaled_exact, scaled_gap
-from sher3_diagnosis.judge.level import LEVELS, at_level, lawful, levels_told
+from sher3_diagnosis.judge.level import LEVELS, at_level, lawful, level_weights
 from sher3_diagnosis.verdict import Interval, Place
 
 
@@ -33,7 +33,7 @@ def judged_together(
         return [judged(i, calibration, c) for i, c in zip(items, closures, strict=True)]
     return [
         _over_levels(i, calibration, c, weight)
-        for i, c, weight in zip(items, closures, levels_told(items), strict=True)
+        for i, c, weight in zip(items, closures, level_weights(items), strict=True)
     ]
 
 

@@ -66,7 +66,7 @@ def pattern_of(evidence: Evidence, fit: Fit, index: int) -> Pattern:
 
 
 def _parts(evidence: Evidence, fit: Fit, index: int, run: int, channel: Channel) -> tuple[Array, Array]:
-    """What the cause adds to a channel of a held-out run, and the residual rid of the other causes, whitened (N,)."""
+    """What the cause adds to a channel of a held-out run, and the residual less the other causes, standardised (N,)."""
     target = evidence.data.target[run][channel]
     parts = [term.adds(run, channel, fit.loro_of(j)[run]) for j, term in enumerate(fit.terms)]
     added = np.broadcast_to(parts.pop(index), target.shape)

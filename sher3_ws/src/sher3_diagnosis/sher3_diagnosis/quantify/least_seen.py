@@ -56,9 +56,9 @@ def _least(evidence: Evidence, effect: Effect, site: str) -> list[str]:
         low, high = effect.limits(shapes[0]).get(name, (-np.inf, np.inf))
         if value > (1.0 if unit == "1" else max(abs(low), abs(high))):
             continue  # more than the whole, or than is possible: no size shows
-        told = rounded(value, unit) if unit != "1" else f"{100.0 * value:.2g} %"
+        text = rounded(value, unit) if unit != "1" else f"{100.0 * value:.2g} %"
         weak = -value if stiff else value
-        found[unit] = max(found.get(unit, (-np.inf, "")), (weak, f"{'below' if stiff else 'from'} {told}"))
+        found[unit] = max(found.get(unit, (-np.inf, "")), (weak, f"{'below' if stiff else 'from'} {text}"))
     return [text for _, text in found.values()]
 
 

@@ -143,7 +143,7 @@ def _slope(evidence: Evidence, fit: Fit, index: int, name: str) -> list[dict[Cha
 
 
 def _pieces(evidence: Evidence, run: int, channel: Channel) -> Array:
-    """Piece of its excitation that each whitened sample of a run lies in, (N,): repeats share them."""
+    """Piece of its excitation that each standardised sample of a run lies in, (N,): repeats share them."""
     ok = evidence.data.residuals[run][channel].ok
     piece = (np.flatnonzero(ok) * PIECES) // len(ok)
     return np.repeat(piece, len(evidence.floors[run][channel]))

@@ -14,8 +14,8 @@ from sher3_diagnosis.attribute.rivals import InMotion
 from sher3_diagnosis.channel import Channel, Mask
 from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.fit.fitting import Fit, fit
+from sher3_diagnosis.fit.standardised import Standardised
 from sher3_diagnosis.fit.term import Term, make_term
-from sher3_diagnosis.fit.whitened import Whitened
 from sher3_diagnosis.quantify.polish import polish
 
 LEAST = 0.3
@@ -74,7 +74,7 @@ def without(evidence: Evidence, rests: Rests) -> Evidence:
         ok = residuals[r][c].ok.copy()
         ok[np.flatnonzero(ok)[rest]] = False
         residuals[r][c] = replace(residuals[r][c], ok=ok)
-    data = Whitened(evidence.views, residuals, evidence.floors)
+    data = Standardised(evidence.views, residuals, evidence.floors)
     return replace(evidence, data=data, nuisance=tuple(_sliced(t, rests) for t in evidence.nuisance))
 
 

@@ -15,21 +15,21 @@ LEAST = 1e-3
 """Share of its value to which a size is told at least: beyond that it is told as unknown, not as nothing."""
 
 
-def over_rivals(found: Attribution, index: int, told: Mapping[str, Parameter]) -> dict[str, Parameter]:
+def over_rivals(found: Attribution, index: int, own: Mapping[str, Parameter]) -> dict[str, Parameter]:
     """Return the parameters of a cause with intervals that hold their values beside each rival of another cause.
 
     Args:
         found: causes and their rivals.
         index: of the cause.
-        told: its parameters beside the causes that were chosen.
+        own: its parameters beside the causes that were chosen.
     """
-    out, term = dict(told), found.fit.terms[index]
+    out, term = dict(own), found.fit.terms[index]
     beside = [f for i in found.causes if i != index for f in found.rivals[i]]
     for other in beside:
         at = next((k for k, t in enumerate(other.terms) if t.key == term.key), None)
         if at is not None:
             values = term.effect.parameters(other.terms[at].shape, other.of(at))
-            out |= {name: _holding(out[name], told[name], x) for name, x in values.items() if name in told}
+            out |= {name: _holding(out[name], own[name], x) for name, x in values.items() if name in own}
     return out
 
 

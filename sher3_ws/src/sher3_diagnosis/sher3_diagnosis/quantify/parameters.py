@@ -36,12 +36,12 @@ def parameters(evidence: Evidence, fit: Fit, index: int) -> dict[str, Parameter]
     bounded = len(fit.loro_coefficients) >= MIN_RUNS
     around = local(evidence, fit, index) if bounded else None
     misfit = hidden_share(evidence, fit, index)
-    told = term.effect.measured(evidence.views, term.site, term.shape)
+    measured = term.effect.measured(evidence.views, term.site, term.shape)
     out: dict[str, Parameter] = {}
     for name, x in term.effect.parameters(term.shape, best).items():
         half = None if around is None or name in term.effect.discrete else _half_width(term, best, around, name, misfit)
-        if name in told and bounded:
-            x, half = told[name].value, max(half or 0.0, JACKKNIFE * told[name].error)
+        if name in measured and bounded:
+            x, half = measured[name].value, max(half or 0.0, JACKKNIFE * measured[name].error)
         unit = term.effect.unit(name, term.site, term.site in evidence.rotary)
         low, high = (None, None) if half is None else (x - half, x + half)
         means = term.effect.choices.get(name, {}).get(x)

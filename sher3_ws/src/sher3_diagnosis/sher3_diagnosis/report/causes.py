@@ -10,7 +10,7 @@ from sher3_diagnosis.finding import Finding
 from sher3_diagnosis.localise.pattern import Pattern, pattern_of
 from sher3_diagnosis.machine import Diagnosis
 from sher3_diagnosis.report.odds import significant
-from sher3_diagnosis.report.summary import told
+from sher3_diagnosis.report.summary import shown_parameters
 from sher3_diagnosis.verdict import Cause, Parameter
 from sher3_diagnosis.words import listed, lower, place, quantity, range_text, share, words
 
@@ -74,7 +74,7 @@ def _card(cause: Cause, diagnosis: Diagnosis, effect: Effect | None) -> CauseCar
 
 def _parameters(cause: Cause, choices: frozenset[str]) -> list[tuple[str, str, str]]:
     """Return (name, value, interval) in words, those that differ from zero first."""
-    ranked = sorted(told(cause).items(), key=lambda x: not significant(x[1]))
+    ranked = sorted(shown_parameters(cause).items(), key=lambda x: not significant(x[1]))
     return [(n.replace("_", " "), p.means or quantity(p.value, p.unit), _interval(p, n in choices)) for n, p in ranked]
 
 

@@ -24,13 +24,13 @@ class FoundRow(NamedTuple):
 def found_rows(found: Discovery) -> list[FoundRow]:
     """Return the terms as they are printed."""
     rows = []
-    for term, told in zip(found.terms, found.sentences, strict=True):
+    for term, sentence in zip(found.terms, found.sentences, strict=True):
         c = term.coefficient
         name = component_name(found.channel, term.component)
         value, interval = _in_si(c.value, c.unit), range_text(c.low, c.high, "")
         if "/" not in c.unit:
             value, interval = quantity(c.value, c.unit), range_text(c.low, c.high, c.unit)
-        rows.append(FoundRow(name, str(term.feature), value, interval, f"{term.again} of {found.folds}", told))
+        rows.append(FoundRow(name, str(term.feature), value, interval, f"{term.again} of {found.folds}", sentence))
     return rows
 
 

@@ -28,8 +28,8 @@ def odds(verdict: Verdict) -> str:
     if ranked[0].probability >= SURE or not any(a.causes for a in ranked):
         return ""
     text = "; or ".join(_said(a, first, i) for i, a in enumerate(ranked))
-    told = _names(first.bet)
-    beside = [sized(c) for c in verdict.causes if (c.effect, c.actuator) not in told]
+    named = _names(first.bet)
+    beside = [sized(c) for c in verdict.causes if (c.effect, c.actuator) not in named]
     return text + (f"; besides {listed(beside)}" if beside else "")
 
 
@@ -51,7 +51,7 @@ def _names(of: Answer | Verdict) -> set[tuple[str, str]]:
 
 def sized(cause: Cause) -> str:
     """Return a cause with the first of its parameters that differs from zero."""
-    first = next((p for p in told(cause).values() if significant(p)), None)
+    first = next((p for p in shown_parameters(cause).values() if significant(p)), None)
     return (
         name_of(cause)
         if first is None or first.unit == "1"
@@ -59,7 +59,7 @@ def sized(cause: Cause) -> str:
     )
 
 
-def told(cause: Cause) -> dict[str, Parameter]:
+def shown_parameters(cause: Cause) -> dict[str, Parameter]:
     """Return the parameters of a cause without sizes that are exactly zero; shares in percent.
 
     Of parameters with one interval, the first.
@@ -121,6 +121,6 @@ def sizes(answer: Answer) -> str:
     return ", ".join(
         f"{n.replace('_', ' ')} {p.means or quantity(p.value, p.unit)} ({range_text(p.low, p.high, p.unit)})"
         for c in answer.causes
-        for n, p in told(c).items()
+        for n, p in shown_parameters(c).items()
         if significant(p)
     )

@@ -7,7 +7,7 @@ from types import MappingProxyType
 from typing import Any
 
 from sher3_diagnosis.report.odds import name_of, odds, significant, sized
-from sher3_diagnosis.report.odds import told as told
+from sher3_diagnosis.report.odds import shown_parameters as shown_parameters
 from sher3_diagnosis.reporter import Reporter, Table
 from sher3_diagnosis.verdict import Cause, Interval, Verdict
 from sher3_diagnosis.words import listed, lower, place, quantity, range_text, ratio_text, share, words
@@ -84,7 +84,7 @@ def five_lines(
 def cause_text(cause: Cause) -> str:
     """Return a cause with every parameter that differs from zero, its first one where none does, and its rivals."""
     text = words(name_of(cause))
-    known = list(told(cause).items())
+    known = list(shown_parameters(cause).items())
     for name, p in [(n, p) for n, p in known if significant(p)] or known[:1]:
         text += f", {name.replace('_', ' ')} {p.means or quantity(p.value, p.unit)}"
         text += "" if p.low is None else f" ({range_text(p.low, p.high, p.unit)})"
@@ -196,9 +196,9 @@ def _next(verdict: Verdict, reporter: Reporter[Any], case: str, folder: str, opt
         added = f", with {e.added}," if e.added else ""
         expected = "" if e.expected_odds is None else f"; expected odds {share(e.expected_odds)}"
         bet = verdict.places[0].bet if verdict.places else None
-        told = e.expected_odds is None or bet is None or e.expected_odds > bet.probability
+        separates = e.expected_odds is None or bet is None or e.expected_odds > bet.probability
         apart = f"{' / '.join(words(i).lower() for i in e.separates)} apart{expected}"
-        tells = f"{e.excitation}{added} {'tells' if told else 'hardly tells'} {apart}"
+        tells = f"{e.excitation}{added} {'tells' if separates else 'hardly tells'} {apart}"
         return f"`sher3 gap experiment {_file(case, folder)} {case}`: {tells}" if reporter.simulated else tells
     line = command(verdict, reporter, case, folder, options)
     return "none" if line is None else f"`{line[0]}` {line[1]}"

@@ -66,7 +66,7 @@ class MotorDriverNode(Node):
                 link.close()
             raise
         self._supervisor = SupervisorLink(self.driver)
-        self._told = False
+        self._reported_stop = False
         self._refused: str | None = None
         self._logged = False
         self._before: tuple[int, Vector] | None = None
@@ -93,7 +93,7 @@ class MotorDriverNode(Node):
         feedback = driver.collect()
         if feedback is not None:
             self._publish_feedback(stamp, feedback)
-        if self._told is not (driver.stop.first is not None):
+        if self._reported_stop is not (driver.stop.first is not None):
             self._report(stamp)
 
     def _velocity(self, stamp: int, position: Vector) -> Vector:
@@ -127,7 +127,7 @@ class MotorDriverNode(Node):
         return refusal
 
     def _report(self, stamp: int) -> None:
-        self._told = self.driver.stop.first is not None
+        self._reported_stop = self.driver.stop.first is not None
         level, message, values = driver_report(self.driver, self._refusal())
         self._publish_report(DiagnosticSample(stamp, "motor_driver: drives", level, message, values))
 

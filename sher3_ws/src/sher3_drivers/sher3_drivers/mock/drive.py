@@ -317,12 +317,12 @@ class MockDrive:
             self._demand = max(0, self._demand - step) if self._demand > 0 else min(0, self._demand + step)
         if self.state == FAULT_REACTION and self._demand == 0:
             self.state = FAULT
-        moves = told = self._demand * self.scale.velocity * self._micro
+        moves = echo = self._demand * self.scale.velocity * self._micro
         if self.stray is not None and self.state in (ENABLED, QUICK_STOP, FAULT_REACTION):
             moves = self.stray(moves)
         if self.turned is not None:
             moves = self.turned(moves)
-        self._astray = moves - told
+        self._astray = moves - echo
         return moves
 
     def sample(self, motor: float, load: float, demand: float, effort: float) -> bytes:

@@ -44,8 +44,8 @@ class ComplianceBehindMotor(BehindMotor):
         """Return frequencies of the load on its spring while the motor is held, Hz, and dampings."""
         if not self.weighs(views, site):
             return []
-        told = [f for f in self.FREQUENCIES if f * views[0].run.period < self.OF_RATE]
-        return [{"frequency": f, "damping": z} for f in told for z in self.DAMPINGS]
+        sampled = [f for f in self.FREQUENCIES if f * views[0].run.period < self.OF_RATE]
+        return [{"frequency": f, "damping": z} for f in sampled for z in self.DAMPINGS]
 
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
         """Return one column: the acceleration of the load beyond that of the motor."""

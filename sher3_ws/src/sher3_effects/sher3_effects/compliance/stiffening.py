@@ -6,7 +6,7 @@ import numpy as np
 from sher3_diagnosis.channel import Array
 from sher3_diagnosis.effect import Shape
 
-TOLD_AT = 1.0
+STATED_AT = 1.0
 """Force on the tip at which a compliance that changes with it is stated, N."""
 HALVED = (2.0, 6.0, 20.0)
 """Forces tried first at which a compliance has fallen to half, N: tips are loaded by one or two."""
@@ -20,6 +20,6 @@ def stiffened(shape: Shape) -> list[Shape]:
 
 
 def softness(force: Array, shape: Shape) -> Array:
-    """Return (g, 1, 1): compliance c / (1 + |F| / stiffens) under forces (g, 3) [N], over that at `TOLD_AT`."""
+    """Return (g, 1, 1): compliance c / (1 + |F| / stiffens) under forces (g, 3) [N], over that at `STATED_AT`."""
     knee = shape.get("stiffens", np.inf)
-    return ((1.0 + TOLD_AT / knee) / (1.0 + np.linalg.norm(force, axis=1) / knee))[:, None, None]
+    return ((1.0 + STATED_AT / knee) / (1.0 + np.linalg.norm(force, axis=1) / knee))[:, None, None]

@@ -11,7 +11,7 @@ from sher3_diagnosis.effect import Best, Shape, Signature, column
 from sher3_sim.effect import PlantEffect, parameter
 from sher3_sim.parameters import PlantParameters
 
-from sher3_effects.compliance.two_slopes import BENT_FROM, finer, is_told, knees, parts, slopes
+from sher3_effects.compliance.two_slopes import BENT_FROM, finer, is_shown, knees, parts, slopes
 from sher3_effects.operators import oscillator
 from sher3_effects.page import Page
 from sher3_effects.view import AxisView
@@ -170,7 +170,7 @@ class ComplianceOnAxis(TransmissionCompliance):
         if "ringing" in shape:
             return shape["damping"] < MOST_DAMPED
         if "knee" in shape:
-            return bool((coefficients[:2] > 0.0).all() and is_told(shape))
+            return bool((coefficients[:2] > 0.0).all() and is_shown(shape))
         return bool(coefficients[0] > 0.0 and (coefficients[1:] >= 0.0).all())
 
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
@@ -239,7 +239,7 @@ class ComplianceOfJoint(TransmissionCompliance):
 
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
         """Return whether it is a spring on either side of the knee."""
-        return bool((coefficients > 0.0).all() and is_told(shape))
+        return bool((coefficients > 0.0).all() and is_shown(shape))
 
 
 @dataclass(frozen=True)

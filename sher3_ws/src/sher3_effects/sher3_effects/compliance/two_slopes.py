@@ -29,10 +29,10 @@ def knees(forces: Iterable[Array], shape: Shape) -> list[Shape]:
     """
     size = np.abs(np.concatenate(list(forces)))
     usual = float(np.sqrt(np.mean(size**2)))
-    told = [
+    shown = [
         k * usual for k in KNEES if usual and np.mean((size > ON[0] * k * usual) & (size < ON[1] * k * usual)) > SEEN
     ]
-    return [{**shape, "knee": knee, "least": min(told)} for knee in told]
+    return [{**shape, "knee": knee, "least": min(shown)} for knee in shown]
 
 
 def finer(shape: Shape) -> list[Shape]:
@@ -40,7 +40,7 @@ def finer(shape: Shape) -> list[Shape]:
     return [{**shape, "knee": shape["knee"] * factor} for factor in FINER]
 
 
-def is_told(shape: Shape) -> bool:
+def is_shown(shape: Shape) -> bool:
     """Return whether a shape has no knee, or a knee above the smallest force at which the records would show it."""
     return "knee" not in shape or shape["knee"] >= LEAST * shape["least"]
 

@@ -24,7 +24,7 @@ class GearLoss(Page):
     dry = True
     best = Best("reversals", "reversals of several amplitudes and speeds separate friction laws")
     extends = ("coulomb_friction",)
-    told_by = ("share",)
+    extends_by = ("share",)
     explanation = (
         "The teeth rub the more the heavier they are loaded: the step at a reversal grows with the force that the "
         "joint carries there."

@@ -33,7 +33,7 @@ class PositionFriction(DryFriction):
     settles = True
     best = Best("reversals", "reversals of several amplitudes and speeds separate friction laws")
     extends = ("coulomb_friction",)
-    told_by = ("amplitude",)
+    extends_by = ("amplitude",)
     leaves_out = "the shape of its peaks, and that no two are alike"
     explanation = (
         "Friction changes along the stroke (seal, guide, ball return): at the same place the extra force has "

@@ -54,7 +54,7 @@ class PreslidingOnAxis(PreslidingFriction):
 
     kinds = ("axis",)
     extends = ("coulomb_friction",)
-    told_by = ("displacement",)
+    extends_by = ("displacement",)
     bounds = {"displacement": (0.0, np.inf), "force": (0.0, np.inf), "stiffness": (0.0, np.inf)}
     SHARES = (0.001, 0.002, 0.004, 0.008, 0.016, 0.03)
     """Of the travel, where the lead is not known."""

@@ -79,7 +79,7 @@ class GravityOnAxis(GravityLoad):
 
     kinds = ("axis",)
     plain = True
-    told_by_travel = BENT_FROM
+    parted_by_travel = BENT_FROM
     units = {"relative": "1", "force": "N", "arm": "N", "hanging": "m"}
     on_axis = {"force": "offset", "relative": "weight", "arm": "arm", "hanging": "hanging"}
     TRAVEL = 0.3

@@ -71,14 +71,14 @@ class LinkInertia(Page):
 
     def signature(self, view: Any, site: str, shape: Shape) -> Signature:
         """Return, without a coefficient, what the found changes ask of every joint that carries the link."""
-        told = np.array(list(self.numbers(shape).values()))
-        return Signature(fixed={c: x @ told for c, x in self.forces(view, site, shape).items()})
+        changes = np.array(list(self.numbers(shape).values()))
+        return Signature(fixed={c: x @ changes for c, x in self.forces(view, site, shape).items()})
 
     def forces(self, view: Any, site: str, shape: Shape) -> dict[Channel, Array]:
         """Return on every joint that carries the link the force per unit of the parameters that the shape names."""
         arm: ArmMotionView = view
-        told = [self.NAMES.index(name) for name in self.numbers(shape)]
-        return {Channel(self.stage, joint): x[:, None, told] for joint, x in arm.per_inertial(site).items()}
+        columns = [self.NAMES.index(name) for name in self.numbers(shape)]
+        return {Channel(self.stage, joint): x[:, None, columns] for joint, x in arm.per_inertial(site).items()}
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
         """Return the change of mass times centre, and every number that was told."""

@@ -38,8 +38,8 @@ class SpeedLimitOfLoop(Page):
     def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
         """Return limits of which more is asked for a while, and less of it."""
         row, top = views[0].row(site), max(v.axis(site).top for v in views)
-        told = [np.abs(self._steps(v, row)) / v.run.period for v in views]
-        asked = np.concatenate(told)
+        speeds = [np.abs(self._steps(v, row)) / v.run.period for v in views]
+        asked = np.concatenate(speeds)
         slower = [np.mean((asked > 0.0) & (asked < s * top)) > self.BELOW for s in self.LEVELS]
         faster = [np.mean(asked > s * top) > self.BEYOND for s in self.LEVELS]
         both = [s for s, less, more in zip(self.LEVELS, slower, faster, strict=True) if less and more]

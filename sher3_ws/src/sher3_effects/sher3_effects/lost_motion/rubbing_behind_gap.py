@@ -25,7 +25,7 @@ class RubbingBehindGap(Page):
     kinds, needs = ("axis",), ("drive",)
     dry = True
     extends = ("coulomb_friction", "presliding_friction")
-    told_by = ("width",)
+    extends_by = ("width",)
     best = Best("reversals", "reversals of several amplitudes show a travel that needs no force")
     leaves_out = "how its level varies over the stroke"
     explanation = (
@@ -52,8 +52,8 @@ class RubbingBehindGap(Page):
         """Return widths and reaches, m or rad; none where no force was recorded."""
         travel = max(v.axis(site).travel for v in views)
         tried: list[Shape] = [{"width": w * travel, "reach": r * travel} for w in self.WIDTHS for r in self.REACHES]
-        told = all(v.run.effort is not None for v in views)
-        return [shape for shape in tried if told and self.allowed(views, site, shape)]
+        measured = all(v.run.effort is not None for v in views)
+        return [shape for shape in tried if measured and self.allowed(views, site, shape)]
 
     def allowed(self, views: Sequence[AxisView], site: str, shape: Shape) -> bool:
         """Return whether a gap is wider than what the encoder sees, and leaves a travel to slide on."""

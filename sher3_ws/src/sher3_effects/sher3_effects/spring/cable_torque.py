@@ -21,7 +21,7 @@ class CableTorque(Page):
     kinds = ("joint",)
     best = Best("sweep", "long constant-speed strokes separate ratios from offsets")
     extends = ("gravity_load", "spring_torque")
-    told_by = ("span",)
+    extends_by = ("span",)
     explanation = (
         "A cable or hose that is led along the joint pulls at it: a force that depends on the position alone, the same "
         "going and coming, stiffer towards the ends of the travel."

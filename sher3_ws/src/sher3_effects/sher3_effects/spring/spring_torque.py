@@ -25,7 +25,7 @@ class SpringTorque(Page):
     plain = True
     best = Best("sweep", "long constant-speed strokes separate ratios from offsets")
     extends: ClassVar[tuple[str, ...]] = ("gravity_load",)
-    told_by = ("stiffness",)
+    extends_by = ("stiffness",)
     explanation = (
         "A spring pulls the axis to one place: a force that grows in proportion to the distance from it, the same "
         "going and coming."
@@ -59,7 +59,7 @@ class SpringOnAxis(SpringTorque):
     plain = True
     units = {"stiffness": "N/m", "rest": "m", "stiffness_at_end": "N/m"}
     bent_from = BENT_FROM
-    told_by_travel = BENT_FROM
+    parted_by_travel = BENT_FROM
 
     def on(self, axis: NominalAxis) -> Page:
         """Return the page beside a weight at an arm where the axis may carry a weight."""

@@ -151,8 +151,8 @@ class ServoLag(DriveLag):
         """Return the time constant, and the damping of a filter of second order or the numbers of a balance."""
         if "balance" not in shape:
             return dict(shape)
-        told = dict(zip(self.BALANCE, map(float, coefficients), strict=False))
-        return {**told, **{name: shape[name] for name in ("delay",) if name in shape}}
+        numbers = dict(zip(self.BALANCE, map(float, coefficients), strict=False))
+        return {**numbers, **{name: shape[name] for name in ("delay",) if name in shape}}
 
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
         """Return whether a filter of second order is one, and every number of a balance is above zero.

@@ -46,7 +46,7 @@ class EffortLag(DriveLag):
     def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
         """Return time constants, s, and dead times beyond what a filter of the position makes."""
         run, row = views[0].run, views[0].row(site)
-        if run.effort is None or not np.any(run.effort[:, row]) or not views[0].axis(site).told:
+        if run.effort is None or not np.any(run.effort[:, row]) or not views[0].axis(site).effort_is_demand:
             return []
         late, times = earliest(run.period), self.times(run.period, run.bandwidth)
         return [*({"time_constant": t} for t in times), *({"delay": t} for t in times if t > late)]

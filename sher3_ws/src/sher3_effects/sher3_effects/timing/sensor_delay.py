@@ -55,7 +55,7 @@ class SensorDelay(Page):
         late = [s * n * run.period for n in self.PERIODS for s in (1.0, -1.0) if n * run.period <= LONGEST_DELAY]
         which = [float(k) for k, x in enumerate((run.load, run.effort)) if x is not None and np.any(x[:, row])]
         least = run.UNSTATED * self.LEAST * run.period
-        early = earliest(run.period) if views[0].axis(site).told else LONGEST_DELAY
+        early = earliest(run.period) if views[0].axis(site).effort_is_demand else LONGEST_DELAY
         return [
             {"delay": t, "of_effort": k, "least": k * least}
             for k in which
@@ -99,7 +99,7 @@ class SensorDelay(Page):
         whole = abs(shape["delay"] + float(coefficients[0]))
         return bool(self.REST[0] < coefficients[0] / shape["delay"] < self.REST[1] and whole >= shape["least"])
 
-    def told(self) -> Page:
+    def at_estimate(self) -> Page:
         """Return the form for an effort whose delay was estimated before: nothing of it is fitted."""
         return TimedEffort()
 
@@ -125,7 +125,7 @@ class TimedEffort(SensorDelay):
 
     def measured(self, views: Sequence[AxisView], site: str, shape: Shape) -> dict[str, Measured]:
         """Return the estimated delay, s, with its standard error."""
-        return {"effort_delay": Measured(shape["told"], shape["error"])}
+        return {"effort_delay": Measured(shape["estimate"], shape["error"])}
 
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
         """Return True: what the delay is was settled before."""

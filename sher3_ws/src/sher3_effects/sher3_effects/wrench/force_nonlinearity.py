@@ -28,8 +28,8 @@ class ForceNonlinearity(Page):
 
     def shapes(self, views: Sequence[CellView], site: str) -> list[Shape]:
         """Return the orders, 2 and 3, that the number of different forces can tell."""
-        told = len(np.unique(np.round(views[0].share, 2)))
-        return [{"order": float(n)} for n in (2, 3) if told > n + 1]
+        forces = len(np.unique(np.round(views[0].share, 2)))
+        return [{"order": float(n)} for n in (2, 3) if forces > n + 1]
 
     def signature(self, view: CellView, site: str, shape: Shape) -> Signature:
         """Return the curves up to an order, one at their largest."""

@@ -39,7 +39,7 @@ class Excitation:
         joints: names.
         slides: whether each joint slides.
         motion: of a period.
-        told: smallest over largest singular value of the constants that the motion can tell at all, scaled to one.
+        worst: smallest over largest singular value of the constants that the motion can tell at all, scaled to one.
         median: the same of the motions that it was chosen among.
         box: what the joints may do.
     """
@@ -47,7 +47,7 @@ class Excitation:
     joints: Sequence[str]
     slides: Sequence[bool]
     motion: Fourier
-    told: float
+    worst: float
     median: float
     box: Box
 
@@ -78,9 +78,9 @@ def designed(machine: Any, runs: Sequence[Any], seed: int = 0) -> Excitation:
     moments = np.linspace(0.0, SECONDS, SAMPLES, endpoint=False)
     values = [np.linalg.svd(scaled(laws(*m.motion(moments))), compute_uv=False) for m in tried]
     rank = max(int((s > NULL * s[0]).sum()) for s in values)
-    told = np.array([s[rank - 1] / s[0] for s in values])
-    best = int(np.argmax(told))
-    return Excitation(names, slides, tried[best], float(told[best]), float(np.median(told)), box)
+    worst = np.array([s[rank - 1] / s[0] for s in values])
+    best = int(np.argmax(worst))
+    return Excitation(names, slides, tried[best], float(worst[best]), float(np.median(worst)), box)
 
 
 def box_of(runs: Sequence[Sequence[Any]], names: Sequence[str]) -> Box:

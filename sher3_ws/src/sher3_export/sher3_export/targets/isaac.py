@@ -14,7 +14,7 @@ from sher3_common import dump_yaml
 
 from sher3_export.targets.configuration import DELAYS, OF_GAINS, Configuration
 from sher3_export.targets.links import INERTIAL
-from sher3_export.targets.target import NOT_TOLD, each
+from sher3_export.targets.target import NOT_GIVEN, each
 
 
 class IsaacLab(Configuration):
@@ -37,7 +37,7 @@ class IsaacLab(Configuration):
         **OF_GAINS,
     }
     refuses: ClassVar[Mapping[str, str]] = {
-        **NOT_TOLD,
+        **NOT_GIVEN,
         **each(
             {
                 "stribeck": "static and sliding friction are stated, the speed between them is not",

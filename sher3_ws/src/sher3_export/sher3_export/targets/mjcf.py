@@ -25,7 +25,7 @@ from sher3_export.targets.mjcf_body import (
 )
 from sher3_export.targets.mjcf_ranges import write_range
 from sher3_export.targets.mjcf_tendon import at_motor
-from sher3_export.targets.target import NOT_TOLD, Row, XmlTarget, field
+from sher3_export.targets.target import NOT_GIVEN, Row, XmlTarget, field
 from sher3_export.xml_file import elements, number, numbers, parents, written
 
 STEP = 0.002
@@ -55,7 +55,7 @@ class Mjcf(XmlTarget):
     """A MuJoCo model; attributes that come from <default> classes are read there and written at the joint."""
 
     name, root_tag, suffix = "mjcf", "mujoco", "xml"
-    refuses: ClassVar[Mapping[str, str]] = NOT_TOLD
+    refuses: ClassVar[Mapping[str, str]] = NOT_GIVEN
     apply_at_motor = at_motor
 
     def __init__(self, root: Element) -> None:

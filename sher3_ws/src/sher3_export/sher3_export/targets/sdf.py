@@ -8,7 +8,7 @@ from xml.etree.ElementTree import Element
 
 from sher3_export.changes import Change
 from sher3_export.targets.links import INERTIAL
-from sher3_export.targets.target import NOT_TOLD, Row, XmlTarget, each
+from sher3_export.targets.target import NOT_GIVEN, Row, XmlTarget, each
 from sher3_export.targets.urdf import PAYLOAD, child
 from sher3_export.xml_file import number, written
 
@@ -19,7 +19,7 @@ class Sdf(XmlTarget):
     name, root_tag = "sdf", "sdf"
     suffix = "sdf"
     refuses: ClassVar[Mapping[str, str]] = {
-        **NOT_TOLD,
+        **NOT_GIVEN,
         **each(
             {
                 "static": "SDF friction is the same at rest and in motion; only the sliding level was written",

@@ -17,7 +17,7 @@ def each(said: Mapping[str, str]) -> dict[str, str]:
     return {name: text for names, text in said.items() for name in names.split()}
 
 
-NOT_TOLD = each(
+NOT_GIVEN = each(
     {
         "arm hanging": "a weight at an arm is mass and centre of a link, which the verdict does not give",
         "load_loss": "friction does not follow the load here; that of the mean load was written",

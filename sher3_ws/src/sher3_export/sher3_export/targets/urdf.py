@@ -11,7 +11,7 @@ from scipy.spatial.transform import Rotation
 
 from sher3_export.changes import Change
 from sher3_export.targets.links import INERTIAL, WANTED, Inertia, WrongLinks
-from sher3_export.targets.target import NOT_TOLD, Row, XmlTarget, each, field
+from sher3_export.targets.target import NOT_GIVEN, Row, XmlTarget, each, field
 from sher3_export.xml_file import add, number, numbers, written
 
 PAYLOAD = "a payload is a link of its own: add it with a fixed joint by hand, or export to mjcf"
@@ -24,7 +24,7 @@ class Urdf(XmlTarget):
     name, root_tag = "urdf", "robot"
     suffix = "urdf"
     refuses: ClassVar[Mapping[str, str]] = {
-        **NOT_TOLD,
+        **NOT_GIVEN,
         **each(
             {
                 "static": "URDF friction is the same at rest and in motion; only the sliding level was written",

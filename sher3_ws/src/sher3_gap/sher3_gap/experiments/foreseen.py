@@ -10,9 +10,9 @@ import numpy as np
 from sher3_description import Robot
 from sher3_description.contract import REFERENCE_TEMPERATURE
 from sher3_diagnosis.channel import AT_TIP, Floors
+from sher3_diagnosis.fit.standardised import Standardised
 from sher3_diagnosis.fit.term import Term
 from sher3_diagnosis.fit.tolerance import as_built
-from sher3_diagnosis.fit.whitened import Whitened
 from sher3_diagnosis.machine import Rehearsal
 
 from sher3_gap.case.loading import signals_of
@@ -67,19 +67,19 @@ def temperature_of(evidence: SherEvidence) -> float:
     return float(np.mean(known)) if known else REFERENCE_TEMPERATURE
 
 
-def _as_built(evidence: SherEvidence, more: Whitened) -> Sequence[Term]:
+def _as_built(evidence: SherEvidence, more: Standardised) -> Sequence[Term]:
     """Return the deviations within tolerance that a case and further runs show together: new places show more."""
     both = evidence.data.with_runs(more, more.target)
     return as_built(both, list(tolerated(both, evidence.robot)))
 
 
-def _warmed(evidence: SherEvidence, floor: Floors, temperature: float) -> Whitened:
+def _warmed(evidence: SherEvidence, floor: Floors, temperature: float) -> Standardised:
     """Return the first run of each recorded excitation at another temperature."""
     first = [evidence.excitations.index(name) for name in dict.fromkeys(evidence.excitations)]
     geometry = evidence.view(0).geometry
     views = [SherView(_at(temperature, evidence.runs[r]), evidence.robot, geometry) for r in first]
-    told = [{c: x for c, x in evidence.data.residuals[r].items() if c in floor} for r in first]
-    return Whitened(views, told, [floor] * len(first))
+    residuals = [{c: x for c, x in evidence.data.residuals[r].items() if c in floor} for r in first]
+    return Standardised(views, residuals, [floor] * len(first))
 
 
 def _at(temperature: float, run: RunSignals) -> RunSignals:
@@ -93,9 +93,9 @@ def _nominal(robot: Robot, name: str) -> list[RunSignals]:
     return [signals_of(run, robot, f"{name} {i}") for i, run in enumerate(rehearse(robot, asked, scatter=None))]
 
 
-def _seen(runs: Sequence[RunSignals], robot: Robot, floor: Floors) -> Whitened:
+def _seen(runs: Sequence[RunSignals], robot: Robot, floor: Floors) -> Standardised:
     """Return runs that were never made, `REPEATS` times each, at the channels of a floor; only when they count."""
     geometry = Geometry(robot)
     views = [SherView(run, robot, geometry) for run in runs]
     told = [{c: x for c, x in all_residuals(run, robot, geometry).items() if c in floor} for run in runs]
-    return Whitened(views * REPEATS, told * REPEATS, [floor] * len(runs) * REPEATS)
+    return Standardised(views * REPEATS, told * REPEATS, [floor] * len(runs) * REPEATS)

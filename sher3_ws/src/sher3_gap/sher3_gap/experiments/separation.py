@@ -12,7 +12,7 @@ import numpy as np
 from sher3_description import Robot
 from sher3_diagnosis.attribute.candidates import Candidates
 from sher3_diagnosis.channel import Channel
-from sher3_diagnosis.fit.fitting import Fit, Whitened
+from sher3_diagnosis.fit.fitting import Fit, Standardised
 from sher3_diagnosis.thresholds import NEEDED, RIVAL
 from sher3_effects import library
 
@@ -111,7 +111,7 @@ def floors_of(evidence: SherEvidence) -> Floors:
 def _with_floors(evidence: SherEvidence, least: Mapping[Channel, np.ndarray]) -> SherEvidence:
     data = evidence.data
     raised = [{c: np.maximum(f, least[c]) if c in least else f for c, f in run.items()} for run in data.floors]
-    return replace(evidence, data=Whitened(data.views, data.residuals, raised))
+    return replace(evidence, data=Standardised(data.views, data.residuals, raised))
 
 
 def _loss(candidates: Candidates, rival: str, own: Fit) -> float:

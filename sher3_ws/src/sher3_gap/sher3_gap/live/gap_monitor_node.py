@@ -26,7 +26,7 @@ from sher3_gap.live.naming import Named, Naming
 TOPIC = "gap/diagnostics"
 MESSAGES = ("at the floor", "gap above the floor", "gap far above the floor")
 WARNED, STALE = 1, 3
-Told = Callable[[int, list[StageStatus], Named | None], None]
+Say = Callable[[int, list[StageStatus], Named | None], None]
 
 
 class GapMonitorNode(Node):
@@ -42,12 +42,12 @@ class GapMonitorNode(Node):
         effects: Sequence[PlantEffect] = (),
         *,
         window: float = 4.0,
-        told: Told | None = None,
+        say: Say | None = None,
         **options: Any,
     ) -> None:
         super().__init__("gap_monitor", **{**NODE_OPTIONS, **options})
         self.monitor = Monitor(robot, effects, window)
-        self._publish, self._told = advertise(self, TOPIC), told
+        self._publish, self._say = advertise(self, TOPIC), say
         self.naming = Naming(robot, self.monitor.stretch, executor=ThreadPoolExecutor(1, "naming"))
         for topic in TOPICS:
             subscribe(self, topic, self._feeder(topic), depth=500)
@@ -64,8 +64,8 @@ class GapMonitorNode(Node):
         named = self.naming.look(stamp, any(s.level for s in found)) if found else self.naming.named
         if named is not None:
             self._publish(cause_diagnostic(stamp, named))
-        if self._told is not None:
-            self._told(stamp, found, named)
+        if self._say is not None:
+            self._say(stamp, found, named)
         if not found:
             self._publish(DiagnosticSample(stamp, "gap", STALE, "waiting for a window without long holes"))
 
@@ -100,13 +100,13 @@ def judged_json(stamp: int, found: Sequence[StageStatus], named: Named | None = 
     return json.dumps({"stamp": stamp, "stages": stages, "cause": cause})
 
 
-def run(robot: Robot, effects: Sequence[PlantEffect], window: float, domain: int = 0, told: Told | None = None) -> None:
-    """Run the monitor in a process of its own beside a running graph until a signal; `told` as in the node."""
+def run(robot: Robot, effects: Sequence[PlantEffect], window: float, domain: int = 0, say: Say | None = None) -> None:
+    """Run the monitor in a process of its own beside a running graph until a signal; `say` as in the node."""
     environment.apply(domain)
     os.environ[PERIOD_VARIABLE] = repr(robot.control_period)
     rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
     try:
         stop = stop_on_signals()
-        spin([GapMonitorNode(robot, effects, window=window, told=told)], stop=stop, diagnostics=False)
+        spin([GapMonitorNode(robot, effects, window=window, say=say)], stop=stop, diagnostics=False)
     finally:
         rclpy.try_shutdown()

@@ -118,7 +118,11 @@ class Monitor:
         twin = driven_as(run, self.robot, effects=list(self.effects))
         assert twin is not None
         known = _residuals(twin, self.robot, Geometry(self.robot))
-        return {c: Residual(r.values - known[c].values, r.ok, told=r.told) for c, r in real.items() if c in known}
+        return {
+            c: Residual(r.values - known[c].values, r.ok, determined=r.determined)
+            for c, r in real.items()
+            if c in known
+        }
 
     def stretch(self, seconds: float) -> RunSignals | None:
         """Return the newest seconds as a run; None while they are not whole."""

@@ -47,7 +47,7 @@ class Path:
         loaded: (g,) a known load is on the tip.
         tool_wrench, contact_wrench: (g, 6) what the sensor reads nominally of the tool's weight and of the
             contact, in {f}; while a load changes, by as much as the reading says it has.
-        told: (g, 6, 6) what the reading tells beside that; None where no load changes.
+        determined: (g, 6, 6) what the reading tells beside that; None where no load changes.
     """
 
     position: Array
@@ -59,7 +59,7 @@ class Path:
     loaded: np.ndarray
     tool_wrench: Array
     contact_wrench: Array
-    told: Array | None = None
+    determined: Array | None = None
 
     @property
     def nominal_wrench(self) -> Array:
@@ -117,12 +117,12 @@ class Geometry:
         contact_force = np.einsum("gji,gj->gi", jacobian[:, :3], contact)
         tool, touch = self._wrench(rotation, contact)
         loaded = np.abs(contact).max(axis=1) > 0.0
-        told = None
+        determined = None
         directions = [self._wrench(rotation, force)[1] for force in changing(run)]
         if run.wrench is not None and any(d.any() for d in directions):
-            share, told = self._shares(run.to_grid(run.wrench) - tool - touch, np.stack(directions, axis=2))
+            share, determined = self._shares(run.to_grid(run.wrench) - tool - touch, np.stack(directions, axis=2))
             touch = touch + share
-        return Path(position, rotation, jacobian, gravity, contact, contact_force, loaded, tool, touch, told)
+        return Path(position, rotation, jacobian, gravity, contact, contact_force, loaded, tool, touch, determined)
 
     def _shares(self, left: Array, directions: Array) -> tuple[Array, Array]:
         """Return the part of a wrench (g, 6) along directions (g, 6, k), and what is left of one, (g, 6, 6)."""

@@ -168,9 +168,9 @@ def wrench_residual(run: RunSignals, geometry: Geometry) -> Residuals:
     path = geometry.path(run)
     values = run.to_grid(run.wrench) - path.nominal_wrench
     ok = run.inner & settled(run.loaded_ok)
-    if path.told is not None:
+    if path.determined is not None:
         ok |= run.inner & np.any(changing(run), axis=(0, 2))
-    return {Channel("sensing", "force_sensor"): Residual(values, ok, told=path.told)}
+    return {Channel("sensing", "force_sensor"): Residual(values, ok, determined=path.determined)}
 
 
 def all_residuals(run: RunSignals, robot: Robot, geometry: Geometry, demand: Demand | None = None) -> Residuals:

@@ -70,8 +70,10 @@ def motion_command(verdict: Path, case: Path, output: Path, as_json: bool, bet: 
     open_ones = [c for c in causes if c.rivals]
     shown = {e.id: e.best.why for e in machine.library()}
     unmoved = [{e for alike, _ in alike_in_motion(c) for e in alike} for c in open_ones]
-    told = [shown[e] for c, x in zip(open_ones, unmoved, strict=True) for e in c.rivals if e in shown and e not in x]
-    besides = [*beyond_motion(causes), *dict.fromkeys(told)]
+    settling = [
+        shown[e] for c, x in zip(open_ones, unmoved, strict=True) for e in c.rivals if e in shown and e not in x
+    ]
+    besides = [*beyond_motion(causes), *dict.fromkeys(settling)]
     rivals = [f"{' / '.join([c.effect, *c.rivals])} on {c.actuator}" for c in open_ones]
     made = designed(machine, runs) if is_driven(machine) else None
     data: dict[str, Any] = {"file": None, "rivals": rivals, "besides": besides}
@@ -79,11 +81,11 @@ def motion_command(verdict: Path, case: Path, output: Path, as_json: bool, bet: 
     if made is not None:
         save(output, made)
         data |= {"file": str(output), "joints": list(made.joints), "seconds": made.motion.seconds}
-        data |= {"told": made.told, "median": made.median}
+        data |= {"worst": made.worst, "median": made.median}
         lines += [
             f"motion     {', '.join(made.joints)}: {made.motion.seconds:g} s from rest to rest, to be repeated",
             "within     range, speed and acceleration of the case's records; collisions are not checked: begin slowly",
-            f"tells      its worst told constant {made.told:.2g} times as well as its best told one; the median of "
+            f"tells      its worst told constant {made.worst:.2g} times as well as its best told one; the median of "
             f"{TRIED} motions {made.median:.2g} times",
             f"file       {output}; record it, `sher3 gap import` and `diagnose` it",
         ]

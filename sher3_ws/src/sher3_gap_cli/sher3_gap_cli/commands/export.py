@@ -68,7 +68,7 @@ def export(
         data = _ranges(given, check, model, names, motors) if ranges else _model(given, to, check, model, names, motors)
         written(target, data.pop("text"))
         data = {"file": str(target), **data, "bets": bet_lines(verdict, bet)}
-        shown(as_json, data, with_bets(data["bets"], _told(data)))
+        shown(as_json, data, with_bets(data["bets"], _text(data)))
 
 
 def _model(
@@ -100,7 +100,7 @@ def _exported(done: Exported, gaps: Any) -> dict[str, Any]:
     return {
         "text": done.text,
         "written": [str(change) for change in done.applied],
-        "not_expressed": [str(untold) for untold in done.untold],
+        "not_expressed": [str(text) for text in done.not_expressed],
         "gaps": [gap_data(gap) for gap in gaps],
     }
 
@@ -113,9 +113,9 @@ def _ranges(given: Any, check: Path | None, model: Path | None, names: dict[str,
 
     if check is None:
         ranges = Ranges(worlds_of(given), identified=given.identified, motors=travels_of(given, motors))
-        return {"text": ranges.text(), "ranges": ranges.told(), "coverage": {}}
+        return {"text": ranges.text(), "ranges": ranges.lines(), "coverage": {}}
     found = covered(given, check, model, names, motors)
-    return {"text": found.ranges.text(), "ranges": found.ranges.told(), "coverage": dict(found.coverage)}
+    return {"text": found.ranges.text(), "ranges": found.ranges.lines(), "coverage": dict(found.coverage)}
 
 
 def gap_data(gap: JointGap) -> dict[str, Any]:
@@ -123,7 +123,7 @@ def gap_data(gap: JointGap) -> dict[str, Any]:
     return {**asdict(gap), "closure": gap.closure.model_dump()}
 
 
-def _told(data: dict[str, Any]) -> str:
+def _text(data: dict[str, Any]) -> str:
     from sher3_diagnosis.words import quantity
 
     lines = [data["file"]]

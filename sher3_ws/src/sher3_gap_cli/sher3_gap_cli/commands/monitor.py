@@ -25,8 +25,8 @@ def monitor(
     from sher3_effects import load_effects
     from sher3_gap.live.gap_monitor_node import Named, StageStatus, judged_json, run
 
-    def told(stamp: int, found: list[StageStatus], named: Named | None) -> None:
+    def say(stamp: int, found: list[StageStatus], named: Named | None) -> None:
         print(judged_json(stamp, found, named), flush=True)
 
     with reported(as_json):
-        run(load_robot(robot), load_effects(effects) if effects else [], window, domain, told if as_json else None)
+        run(load_robot(robot), load_effects(effects) if effects else [], window, domain, say if as_json else None)

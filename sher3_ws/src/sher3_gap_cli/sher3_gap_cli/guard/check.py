@@ -15,7 +15,7 @@ from sher3_gap_cli.options import BAD_INPUT, RequestError, check_writable, effec
 if TYPE_CHECKING:
     from sher3_public.guard.baseline import Baseline
 
-    from sher3_gap_cli.guard.logs import Log, Told
+    from sher3_gap_cli.guard.logs import Log, LogAnswer
 
 WORSE = 1
 """Exit code when something is worse than the baseline."""
@@ -45,7 +45,7 @@ def check(
     with reported(as_json):
         check_writable([record, junit, markdown])
         tasks, known = _tasks(paths, without or [], baseline, record), None if baseline is None else _read(baseline)
-        found = [_compared(t, known, allow) for t in _told(tasks, jobs, dask)]
+        found = [_compared(t, known, allow) for t in _answers(tasks, jobs, dask)]
         for target, text in ((junit, pages.junit), (markdown, pages.markdown)):
             if target is not None:
                 written(target, text(found))
@@ -74,15 +74,15 @@ def _tasks(paths: Sequence[Path], without: list[str], baseline: Path | None, rec
     return list(tasks.values())
 
 
-def _told(tasks: Sequence[Log], jobs: int, dask: str) -> list[Told]:
+def _answers(tasks: Sequence[Log], jobs: int, dask: str) -> list[LogAnswer]:
     """Return what the logs say, in their order."""
-    from sher3_gap_cli.guard.logs import told
+    from sher3_gap_cli.guard.logs import answered
     from sher3_gap_cli.printing import bar
     from sher3_gap_cli.workers import run_here, run_on_dask
 
-    found: dict[Log, Told] = {}
+    found: dict[Log, LogAnswer] = {}
     with bar(len(tasks)) as (say, advance):
-        for one in run_on_dask(told, tasks, dask) if dask else run_here(told, tasks, jobs, say):
+        for one in run_on_dask(answered, tasks, dask) if dask else run_here(answered, tasks, jobs, say):
             found[one.task] = one
             say(f"{one.task.name} is read")
             advance("", "")
@@ -95,31 +95,31 @@ def _read(path: Path) -> Baseline:
     return read_baseline(path)
 
 
-def _compared(told: Told, baseline: Baseline | None, allow: float) -> Told:
+def _compared(answer: LogAnswer, baseline: Baseline | None, allow: float) -> LogAnswer:
     """Return an answer with what is worse than the baseline."""
     from sher3_public.guard.worse import worse
 
-    if baseline is None or told.entry is None:
-        return told
-    return replace(told, worse=tuple(worse(baseline.entry(told.task.name), told.entry, allow)))
+    if baseline is None or answer.entry is None:
+        return answer
+    return replace(answer, worse=tuple(worse(baseline.entry(answer.task.name), answer.entry, allow)))
 
 
-def _baseline(found: Sequence[Told]) -> str:
+def _baseline(found: Sequence[LogAnswer]) -> str:
     from sher3_public.guard.baseline import Baseline
 
     return Baseline(logs={t.task.name: t.entry for t in found if t.entry is not None}).to_json()
 
 
-def _data(told: Told) -> dict[str, Any]:
-    if told.entry is None:
-        return {"log": str(told.task.log), "error": told.error.to_dict() if told.error is not None else None}
-    verdict = told.entry.verdict.model_dump(by_alias=True, mode="json")
-    return {"log": str(told.task.log), "worse": [w._asdict() for w in told.worse], "verdict": verdict}
+def _data(answer: LogAnswer) -> dict[str, Any]:
+    if answer.entry is None:
+        return {"log": str(answer.task.log), "error": answer.error.to_dict() if answer.error is not None else None}
+    verdict = answer.entry.verdict.model_dump(by_alias=True, mode="json")
+    return {"log": str(answer.task.log), "worse": [w._asdict() for w in answer.worse], "verdict": verdict}
 
 
-def _text(found: Sequence[Told]) -> str:
+def _text(found: Sequence[LogAnswer]) -> str:
     lines = []
-    for told in found:
-        lines.append(f"{told.task.name}: {told.error or told.headline}")
-        lines += [f"  worse, {w.rule}: {w.text}" for w in told.worse]
+    for answer in found:
+        lines.append(f"{answer.task.name}: {answer.error or answer.headline}")
+        lines += [f"  worse, {w.rule}: {w.text}" for w in answer.worse]
     return "\n".join(lines)

@@ -30,7 +30,7 @@ class Log:
 
 
 @dataclass(frozen=True)
-class Told:
+class LogAnswer:
     """What a log says: its headline and entry, or the error that stopped it; `worse` once it was compared."""
 
     task: Log
@@ -40,7 +40,7 @@ class Told:
     worse: tuple[Worse, ...] = ()
 
 
-def told(log: Log, say: Say = silent) -> Told:
+def answered(log: Log, say: Say = silent) -> LogAnswer:
     """Diagnose one log; input errors come back as the answer, mistakes of ours are raised."""
     from sher3_public.guard.baseline import entry_of
     from sher3_public.one_call import diagnose
@@ -49,5 +49,5 @@ def told(log: Log, say: Say = silent) -> Told:
     try:
         found = diagnose(log.model, log.log, without=log.without)
     except Sher3Error as error:
-        return Told(log, error=error)
-    return Told(log, entry_of(found.diagnosis), found.headline)
+        return LogAnswer(log, error=error)
+    return LogAnswer(log, entry_of(found.diagnosis), found.headline)

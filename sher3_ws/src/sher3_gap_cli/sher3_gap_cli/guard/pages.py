@@ -7,22 +7,22 @@ from xml.etree import ElementTree
 
 from sher3_public.guard.worse import RULES
 
-from sher3_gap_cli.guard.logs import Told
+from sher3_gap_cli.guard.logs import LogAnswer
 
 
-def junit(found: Sequence[Told]) -> str:
+def junit(found: Sequence[LogAnswer]) -> str:
     """Return JUnit XML: a suite for each log, a case for each thing that is looked for."""
     root = ElementTree.Element("testsuites", name="sher3 gap check")
-    for told in found:
-        failed = {rule: [w.text for w in told.worse if w.rule == rule] for rule in RULES}
-        counts = {"tests": len(RULES), "failures": sum(map(bool, failed.values())), "errors": told.error is not None}
+    for answer in found:
+        failed = {rule: [w.text for w in answer.worse if w.rule == rule] for rule in RULES}
+        counts = {"tests": len(RULES), "failures": sum(map(bool, failed.values())), "errors": answer.error is not None}
         numbers = {name: str(int(n)) for name, n in counts.items()}
-        suite = ElementTree.SubElement(root, "testsuite", {"name": told.task.name, **numbers})
+        suite = ElementTree.SubElement(root, "testsuite", {"name": answer.task.name, **numbers})
         for i, rule in enumerate(RULES):
-            case = ElementTree.SubElement(suite, "testcase", classname=told.task.name, name=rule)
-            if told.error is not None:
+            case = ElementTree.SubElement(suite, "testcase", classname=answer.task.name, name=rule)
+            if answer.error is not None:
                 kind = "error" if i == 0 else "skipped"
-                ElementTree.SubElement(case, kind, message=str(told.error))
+                ElementTree.SubElement(case, kind, message=str(answer.error))
             elif failed[rule]:
                 failure = ElementTree.SubElement(case, "failure", message=f"{RULES[rule]}: {len(failed[rule])}")
                 failure.text = "\n".join(failed[rule])
@@ -30,7 +30,7 @@ def junit(found: Sequence[Told]) -> str:
     return ElementTree.tostring(root, encoding="unicode", xml_declaration=True) + "\n"
 
 
-def markdown(found: Sequence[Told]) -> str:
+def markdown(found: Sequence[LogAnswer]) -> str:
     """Return a summary as a table in Markdown, what is worse first."""
     bad = sum(bool(t.worse) or t.error is not None for t in found)
     title = f"## Gap: {bad} of {len(found)} log{'s' * (len(found) > 1)} worse\n"
@@ -38,15 +38,15 @@ def markdown(found: Sequence[Told]) -> str:
     return "\n".join([title, "| log | answer | worse |", "|---|---|---|", *rows]) + "\n"
 
 
-def ordered(found: Sequence[Told]) -> list[Told]:
+def ordered(found: Sequence[LogAnswer]) -> list[LogAnswer]:
     """Return logs with errors, then those that are worse, then the others, each by name."""
     return sorted(found, key=lambda t: (t.error is None, not t.worse, t.task.name))
 
 
-def _worse(told: Told) -> str:
-    if told.error is not None:
+def _worse(answer: LogAnswer) -> str:
+    if answer.error is not None:
         return "not diagnosed"
-    return "<br>".join(_cell(f"{w.rule}: {w.text}") for w in told.worse) or "–"
+    return "<br>".join(_cell(f"{w.rule}: {w.text}") for w in answer.worse) or "–"
 
 
 def _cell(text: str) -> str:

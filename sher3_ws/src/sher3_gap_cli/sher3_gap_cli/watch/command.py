@@ -60,16 +60,16 @@ def watch(
         kept = Window(joint or known, window, rate)
         text = source.text or ""
         topics = (states, command, kind.value, not best_effort)
-        run(lambda: WatchNode(text, kept, every, *topics, told_json if as_json else told))
+        run(lambda: WatchNode(text, kept, every, *topics, print_json if as_json else print_statuses))
 
 
-def told(found: Sequence[Status]) -> None:
+def print_statuses(found: Sequence[Status]) -> None:
     """Print what a diagnosis found."""
     for status in found:
         print(f"{status.name}: {status.message}", flush=True)
 
 
-def told_json(found: Sequence[Status]) -> None:
+def print_json(found: Sequence[Status]) -> None:
     """Print what a diagnosis found as one line of JSON."""
     print(
         json.dumps({"statuses": [{**status._asdict(), "values": dict(status.values)} for status in found]}), flush=True

@@ -61,7 +61,7 @@ class WatchNode(Node):
         self.heard = [(self._subscription(JointState, states, quality), self._state)]
         if command:
             taken = {
-                "JointState": (JointState, self._told),
+                "JointState": (JointState, self._joint_command),
                 "Float64MultiArray": (Float64MultiArray, self._array),
                 "JointTrajectory": (JointTrajectory, self._trajectory),
             }[kind]
@@ -89,7 +89,7 @@ class WatchNode(Node):
             message = deserialize_message(data, JointState)
             self.window.state(_seconds(message.header.stamp), message.name, message.position, message.effort)
 
-    def _told(self, data: bytes, sent: float) -> None:
+    def _joint_command(self, data: bytes, sent: float) -> None:
         message = deserialize_message(data, JointState)
         self.window.command(_seconds(message.header.stamp), message.name, message.position or message.effort)
 

@@ -106,8 +106,8 @@ class Window:
             return
         after, values = set_points(points, [known[name] for name in names], self.period)
         for late, row in zip(after.tolist(), values.tolist(), strict=True):
-            told = {**known, **dict(zip(names, row, strict=True))}
-            self.command(stamp + late, self.joints, [told[name] for name in self.joints], now=stamp)
+            target = {**known, **dict(zip(names, row, strict=True))}
+            self.command(stamp + late, self.joints, [target[name] for name in self.joints], now=stamp)
 
     def _last(self) -> Sequence[float]:
         """Return the set-point in force, the measured place before the first one, zeros before anything was heard."""

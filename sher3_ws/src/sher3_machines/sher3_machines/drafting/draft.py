@@ -23,8 +23,8 @@ from sher3_machines.drafting.guesses import (
     travel,
 )
 from sher3_machines.drafting.names import DRIVING, POSITION, named, words_of
-from sher3_machines.drafting.roles import SIGNALS, TOLD, Place, moves, once, paired, placed, together, values_of
-from sher3_machines.drafting.speeds import told_by_speed
+from sher3_machines.drafting.roles import DEMANDED, SIGNALS, Place, moves, once, paired, placed, together, values_of
+from sher3_machines.drafting.speeds import checked_by_speed
 from sher3_machines.errors import MachineError
 from sher3_machines.intake.fields import TIME_UNITS, VELOCITIES
 from sher3_machines.intake.kind import Draft
@@ -120,7 +120,7 @@ def drafted(path: Path, tables: Tables, rate: float | None, guesses: list[str], 
     ]
     if len(axes) == 1:
         _let_go(axes[0], values_of(next(iter(groups.values()))["position"], tables), guesses)
-    told_by_speed(time, axes, tables, None if clock is None else tables[clock], guesses)
+    checked_by_speed(time, axes, tables, None if clock is None else tables[clock], guesses)
     if not axes:
         raise MachineError(
             f"{path}: no column looks like a position",
@@ -167,8 +167,8 @@ def by_motion(label: str, signals: Mapping[str, Place], tables: Tables, guesses:
         said = set(words_of(bare(place[0]))) if place is not None else set()
         if place is None or named(place[0]).unit is not None or said & (POSITION | DRIVING):
             continue
-        told = signal == "load" or (said & TOLD and "effort" in out)
-        if not told or ratio_of(out, tables, signal):
+        is_force = signal == "load" or (said & DEMANDED and "effort" in out)
+        if not is_force or ratio_of(out, tables, signal):
             continue
         del out[signal]
         other = out.setdefault(force, place)
@@ -247,19 +247,19 @@ def _as_place(label: str, columns: dict[str, Any], x: Array, pulses: Array, gues
 
     It does so at the end of each rest of steps, else all along. Pulses that stay tell nothing, and are left out.
     """
-    place, told = columns["position"], columns.pop("reference")
+    place, pulse = columns["position"], columns.pop("reference")
     ends = np.flatnonzero(np.diff(pulses))
     if len(x) != len(pulses) or not len(ends):
         return
     kept = ends if len(ends) < STEPPED * len(x) else slice(None)
     slope, zero = place.get("factor", 1.0) * np.polyfit(pulses[kept], x[kept], 1)
-    guesses.append(f"{label}: a pulse of 1 {told['unit']} is {slope:.4g} {place['unit']}: the record says so")
+    guesses.append(f"{label}: a pulse of 1 {pulse['unit']} is {slope:.4g} {place['unit']}: the record says so")
     said = {
         "unit": place["unit"],
         "factor": float(f"{slope:.6g}"),
         "offset": float(f"{zero * UNITS[place['unit']]:.6g}"),
     }
-    columns["reference"] = told | said | {"override": True}
+    columns["reference"] = pulse | said | {"override": True}
 
 
 def _without_other_force(label: str, columns: dict[str, Any], guesses: list[str]) -> None:

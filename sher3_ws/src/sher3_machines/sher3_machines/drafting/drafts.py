@@ -8,7 +8,7 @@ from pathlib import Path
 from sher3_common import parse_yaml
 
 from sher3_machines.drafting.draft import draft, written
-from sher3_machines.drafting.unnamed import Place, as_recorded, given, renamed, told_by_motion
+from sher3_machines.drafting.unnamed import Place, as_recorded, given, named_by_motion, renamed
 from sher3_machines.errors import MachineError
 from sher3_machines.intake.kind import Draft
 from sher3_machines.intake.kinds import kinds
@@ -43,10 +43,10 @@ def draft_of(path: Path, rate: float | None = None, model: Path | None = None, n
         return _draft(path, tables, rate, model)
     except MachineError:
         guesses: list[str] = []
-        told = told_by_motion(tables, rate, guesses)
-        if not told:
+        found = named_by_motion(tables, rate, guesses)
+        if not found:
             raise
-        return _named(path, tables, rate, model, told, guesses)
+        return _named(path, tables, rate, model, found, guesses)
 
 
 def _draft(path: Path, tables: Tables, rate: float | None, model: Path | None) -> Draft:

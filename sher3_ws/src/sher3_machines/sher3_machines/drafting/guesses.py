@@ -50,11 +50,11 @@ def clock_of(tables: Tables, guesses: list[str]) -> str:
         MachineError: nothing looks like a time.
     """
     growing = {n: x for n, x in tables.items() if x.ndim == 1 and grows(x)}
-    told = [n for n in growing if tells_time(n)]
-    received = [n for n in told if bare(n) == "received"]
-    told = [n for n in told if n not in received] or told  # the sender's own stamp comes first
-    if told:
-        best = max(told, key=lambda n: len(growing[n]))
+    clocks = [n for n in growing if tells_time(n)]
+    received = [n for n in clocks if bare(n) == "received"]
+    clocks = [n for n in clocks if n not in received] or clocks  # the sender's own stamp comes first
+    if clocks:
+        best = max(clocks, key=lambda n: len(growing[n]))
         guesses.append(f"time is the column {best!r}, because of its name and because it grows")
         return best
     even = [n for n, x in growing.items() if evenly(x) and not counts_samples(n)]

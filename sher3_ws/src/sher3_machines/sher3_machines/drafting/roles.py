@@ -35,7 +35,7 @@ SIGNALS = ("position", "reference", "command", "effort", "load", "applied", "tem
 """Signals of an axis that a draft looks for, in the order they are written."""
 WIDEST = 12
 """Entries of an array column that may be axes: a humanoid's arms; wider ones are matrices."""
-TOLD = {"command", "commanded", "cmd", "action"}
+DEMANDED = {"command", "commanded", "cmd", "action"}
 """Words for what a drive is told, whether a place or a force."""
 ASKED_FOR = ("reference", ASKED_SPEED)
 """Signals that may stay as they are all along."""
@@ -139,8 +139,10 @@ def with_output(placed: Mapping[Place, tuple[str, str]], tables: Tables) -> dict
         return {**placed, plain["out"]: ("command", "")} if drives else dict(placed)
     if "command" in signals and "y" in tables:
         return {**placed, ("y", None): ("position", "")}
-    told = {name: named(name) for name, x in tables.items() if x.ndim == 1 and (name, None) not in placed and moves(x)}
-    places = {(n, None): ("position", w.axis or bare(n)) for n, w in told.items() if w.unit in PLACES}
+    others = {
+        name: named(name) for name, x in tables.items() if x.ndim == 1 and (name, None) not in placed and moves(x)
+    }
+    places = {(n, None): ("position", w.axis or bare(n)) for n, w in others.items() if w.unit in PLACES}
     return {**placed, **{p: what for p, what in places.items() if not set(words_of(bare(p[0]))) & IGNORED}}
 
 
@@ -150,8 +152,8 @@ def with_drive(placed: Mapping[Place, tuple[str, str]]) -> dict[Place, tuple[str
     Where an effort was measured, or where the word stands beside one for a load, the torque comes from outside.
     """
     names = {p: (signal, set(words_of(bare(p[0])))) for p, (signal, _) in placed.items()}
-    told = any(signal == "command" and named(p[0]).unit in FORCES for p, (signal, _) in names.items())
-    if not told or any(signal == "effort" and not words & MODELLED for signal, words in names.values()):
+    by_torque = any(signal == "command" and named(p[0]).unit in FORCES for p, (signal, _) in names.items())
+    if not by_torque or any(signal == "effort" and not words & MODELLED for signal, words in names.values()):
         return dict(placed)
     own = [p for p, (signal, words) in names.items() if signal == "applied" and words & APPLIED == {"applied"}]
     kept = {p: what for p, what in placed.items() if not own or what[0] != "effort"}
@@ -174,8 +176,8 @@ def with_speeds(placed: Mapping[Place, tuple[str, str]]) -> dict[Place, tuple[st
         elif signal == ASKED_SPEED:
             out[p] = "reference", axis or (EVERY if several else "")
         else:
-            told = asked and signal == "reference" and set(words_of(bare(p[0]))) & TOLD
-            out[p] = "command" if told else signal, axis
+            demanded = asked and signal == "reference" and set(words_of(bare(p[0]))) & DEMANDED
+            out[p] = "command" if demanded else signal, axis
     return out
 
 

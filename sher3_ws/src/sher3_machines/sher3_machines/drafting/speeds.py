@@ -16,7 +16,7 @@ from sher3_machines.intake.tables import SAMPLES, Tables
 from sher3_machines.intake.units import UNITS
 
 
-def told_by_speed(
+def checked_by_speed(
     time: dict[str, Any], axes: list[dict[str, Any]], tables: Tables, stamps: Array | None, guesses: list[str]
 ) -> None:
     """Hold recorded speeds against positions: they tell a wrong unit of the clock, else they are left out."""
@@ -27,7 +27,7 @@ def told_by_speed(
     for axis in axes:
         counts = ratios.get(axis["name"]) or 0.0
         if counts > 0.0 and _counted(axis["signals"]):
-            _count_told(axis, counts, guesses)
+            _count_by_speed(axis, counts, guesses)
             ratios[axis["name"]] = 1.0
     units = {likely_unit(r, time.get("unit")) if r is not None else None for r in ratios.values()}
     if len(units) == 1 and (unit := units.pop()) is not None and unit != time["unit"]:
@@ -49,7 +49,7 @@ def _counted(signals: Mapping[str, Any]) -> bool:
     return signals["position"]["unit"] == "count" and stated and "load" not in signals
 
 
-def _count_told(axis: dict[str, Any], ratio: float, guesses: list[str]) -> None:
+def _count_by_speed(axis: dict[str, Any], ratio: float, guesses: list[str]) -> None:
     """Take the count of a place from a recorded speed, of which the place moves `ratio` times the integral."""
     signals = axis["signals"]
     for signal in ("position", "reference"):

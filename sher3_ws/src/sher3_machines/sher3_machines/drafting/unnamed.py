@@ -52,8 +52,8 @@ def given(names: Sequence[str], tables: Tables) -> dict[Place, str]:
         MachineError: there are more or fewer names than columns, or two are alike.
     """
     places = places_of(tables, LEVELS)
-    told = [name for name in names if name]
-    if len(names) != len(places) or len(set(told)) < len(told):
+    kept = [name for name in names if name]
+    if len(names) != len(places) or len(set(kept)) < len(kept):
         raise MachineError(
             "names do not fit the columns",
             value=", ".join(names),
@@ -69,7 +69,7 @@ def _in_unit(name: str, column: str) -> str:
     return name if unit is None or bare_and_unit(name)[1] else f"{name} [{unit}]"
 
 
-def told_by_motion(tables: Tables, rate: float | None, guesses: list[str]) -> dict[Place, str]:
+def named_by_motion(tables: Tables, rate: float | None, guesses: list[str]) -> dict[Place, str]:
     """Return names for columns that have none: the time grows evenly, and a position is the integral of its speed.
 
     Empty where there is no time, or where no two columns without a name are place and speed.
@@ -88,7 +88,7 @@ def told_by_motion(tables: Tables, rate: float | None, guesses: list[str]) -> di
     return {**({clock: "time"} if clock else {}), x: "position", v: "velocity"}
 
 
-def told_by_blocks(tables: Tables, rate: float | None, joints: int, guesses: list[str]) -> dict[Place, str]:
+def named_by_blocks(tables: Tables, rate: float | None, joints: int, guesses: list[str]) -> dict[Place, str]:
     """Return names for a table that has none and holds blocks of columns, with a column for each joint of a robot.
 
     One block is the speed of another block. The block that is left is the effort; of two that are left, the block that

@@ -14,7 +14,7 @@ from sher3_diagnosis.machine import Machine
 from sher3_machines.errors import MachineError
 from sher3_machines.intake.fields import Description
 from sher3_machines.intake.kinds import kinds, load_description
-from sher3_machines.intake.notes import told_once
+from sher3_machines.intake.notes import merged
 from sher3_machines.intake.runs import runs_of
 from sher3_machines.intake.tables import read_tables
 
@@ -67,7 +67,7 @@ def import_case(data: Sequence[Path], description: Path, out: Path) -> list[str]
     (out / MACHINE).write_text(_resolved(description, machine, data), encoding="utf-8")
     record = {"data": [str(path) for path in data], "runs": [run.name for run in runs], "notes": notes}
     (out / IMPORT).write_text(json.dumps(record, indent=1), encoding="utf-8")
-    return told_once(notes, [run.name for run in runs])
+    return merged(notes, [run.name for run in runs])
 
 
 def open_case(path: Path) -> tuple[Machine[Any, Any], list[Any]]:

@@ -62,8 +62,8 @@ def pick(column: Column, tables: Tables, run: str, finite: bool = True) -> Array
 
 def acting(x: Array, within: tuple[float, float] | None) -> Array:
     """Return what acts of recorded numbers (n, ...): of one beyond its bounds the bound, of an infinite one nothing."""
-    told = np.where(np.isinf(x), np.nan, x)
-    return told if within is None else np.clip(told, *within)
+    finite = np.where(np.isinf(x), np.nan, x)
+    return finite if within is None else np.clip(finite, *within)
 
 
 def _with_others(x: Array, column: Column, tables: Tables, run: str, finite: bool) -> Array:
@@ -122,8 +122,8 @@ def scale(column: Column, header: str, run: str) -> float:
 def _clock_column(name: str, clock: Clock) -> Column:
     """Return the column of the stamps: a unit in its header is the right one where the description has the default."""
     match = IN_HEADER.fullmatch(name)
-    told = match is not None and spelled(match["unit"]) in UNITS and "unit" not in clock.model_fields_set
-    return Column(column=name, unit=None if told else clock.unit, index=clock.index, override=clock.override)
+    stated = match is not None and spelled(match["unit"]) in UNITS and "unit" not in clock.model_fields_set
+    return Column(column=name, unit=None if stated else clock.unit, index=clock.index, override=clock.override)
 
 
 def stamps_of(column: Column, tables: Tables, clock: Clock, run: str) -> Array | None:

@@ -11,7 +11,7 @@ NAMED = 3
 """Runs that are named; of more the number is told."""
 
 
-def told_once(notes: Iterable[str], runs: Sequence[str]) -> list[str]:
+def merged(notes: Iterable[str], runs: Sequence[str]) -> list[str]:
     """Return the notes, with one in place of all that say the same of several runs, in the order of the first of them.
 
     Args:
@@ -20,8 +20,8 @@ def told_once(notes: Iterable[str], runs: Sequence[str]) -> list[str]:
     """
     groups: dict[str, dict[str, str]] = {}
     for note in notes:
-        run, told = _split(note, runs)
-        groups.setdefault(NUMBER.sub("#", told) if run else note, {}).setdefault(run, told)
+        run, text = _split(note, runs)
+        groups.setdefault(NUMBER.sub("#", text) if run else note, {}).setdefault(run, text)
     return [_together(found) for found in groups.values()]
 
 
@@ -33,9 +33,9 @@ def _split(note: str, runs: Sequence[str]) -> tuple[str, str]:
 
 def _together(found: dict[str, str]) -> str:
     """Return one note for those of some runs, run -> sentence."""
-    runs, told = list(found), next(iter(found.values()))
+    runs, text = list(found), next(iter(found.values()))
     if len(runs) == 1:
-        return f"{runs[0]}: {told}" if runs[0] else told
+        return f"{runs[0]}: {text}" if runs[0] else text
     named = ", ".join(runs[:NAMED]) + (f" and {len(runs) - NAMED} more" if len(runs) > NAMED else "")
     same = len(set(found.values())) == 1
-    return f"{named}: {told}" + ("" if same else f" (numbers of {runs[0]}; alike in the others)")
+    return f"{named}: {text}" + ("" if same else f" (numbers of {runs[0]}; alike in the others)")

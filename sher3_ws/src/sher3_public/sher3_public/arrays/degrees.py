@@ -52,16 +52,16 @@ def check_degrees(
     if most < FURTHEST or not known or drowned(run.position[:, turns]):
         return
     radians, degrees = (left(names, run, controls, bodies, drives, x)[turns] for x in (1.0, np.pi / 180.0))
-    told = np.isfinite(radians)
-    better = np.log(degrees[told] / radians[told])
-    if not told.any() or better.max() > 0.0 or better.mean() > np.log(BETTER):
+    compared = np.isfinite(radians)
+    better = np.log(degrees[compared] / radians[compared])
+    if not compared.any() or better.max() > 0.0 or better.mean() > np.log(BETTER):
         return
-    value = f"{degrees[told].max():.2g} of the efforts left in degrees"
+    value = f"{degrees[compared].max():.2g} of the efforts left in degrees"
     said = "units={'position': 'deg', 'control': 'deg'}"
     if run.effort is None and most < np.pi:
         guesses.append(f"positions are in rad; in degrees the model would leave less of its forces, {value}: {said}")
         return
-    limit = f"{radians[told].min():.2g} left in rad"
+    limit = f"{radians[compared].min():.2g} left in rad"
     raise InputError("positions are likely in degrees", value=value, limit=limit, remedy=f"give rad, or {said}")
 
 

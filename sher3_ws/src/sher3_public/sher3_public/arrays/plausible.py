@@ -49,8 +49,8 @@ def control_of(name: str, control: Array, position: Array, drive: Drive) -> None
     if not known.any():
         remedy = "give what its actuator was told, or leave control out and give efforts"
         raise InputError(f"{name}: its control has no number", value="NaN or infinite alone", remedy=remedy)
-    told, q = drive.asked(control[known]), position[known]
-    wide, own = float(np.std(told)), float(np.std(q))
+    asked, q = drive.asked(control[known]), position[known]
+    wide, own = float(np.std(asked)), float(np.std(q))
     if not wide or not own:
         return
     if drive.servo and wide > BEYOND * own:
@@ -61,7 +61,7 @@ def control_of(name: str, control: Array, position: Array, drive: Drive) -> None
             limit=f"{BEYOND:g} times that of the position, {own:.3g}",
             remedy=remedy,
         )
-    alike = float(np.corrcoef(told, q)[0, 1])
+    alike = float(np.corrcoef(asked, q)[0, 1])
     if not drive.servo and alike > FOLLOWS and 1.0 / SAME < wide / own < SAME:
         remedy = "give a model with position actuators, servo=(kp, kv), or effort="
         raise InputError(
@@ -151,14 +151,14 @@ def _other_follows(
     names: Sequence[str], columns: Sequence[int | None], run: Arrays, drives: Mapping[str, Driven]
 ) -> tuple[str, str, float, float] | None:
     """Return a joint, the one whose control it follows in place of its own, and both correlations; or None."""
-    told: dict[str, Array] = {}
+    asked: dict[str, Array] = {}
     for name, column in zip(names, columns, strict=True):
         drive = drives[name].drive if name in drives else None
         if run.control is not None and column is not None and drive is not None and drive.servo:
-            told[name] = drive.asked(run.control[:, column])
-    for name in told:
+            asked[name] = drive.asked(run.control[:, column])
+    for name in asked:
         q = run.position[:, names.index(name)]
-        alike = {other: _alike(x, q) for other, x in told.items()}
+        alike = {other: _alike(x, q) for other, x in asked.items()}
         best = max(alike, key=lambda other: alike[other])
         if alike[name] < APART and alike[best] > FOLLOWS:
             return name, best, alike[name], alike[best]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Literal, NamedTuple
 
-from sher3_diagnosis.report.summary import cause_text, told
+from sher3_diagnosis.report.summary import cause_text, shown_parameters
 from sher3_diagnosis.verdict import Cause, Interval, Verdict
 from sher3_diagnosis.words import place, quantity, words
 
@@ -68,8 +68,8 @@ def _growths(baseline: Verdict, now: Verdict, allowed: float) -> Iterator[Worse]
         before = _same(baseline, cause)
         if before is None or before.effect != cause.effect:
             continue
-        for name, value in told(cause).items():
-            was = told(before).get(name)
+        for name, value in shown_parameters(cause).items():
+            was = shown_parameters(before).get(name)
             if was is not None and was.unit == value.unit and least(value) > (1.0 + allowed) * most(was) > 0.0:
                 sizes = f"{quantity(was.value, was.unit)} -> {quantity(value.value, value.unit)}"
                 yield Worse(

@@ -60,7 +60,7 @@ class SearchResult:
     def to_dict(self) -> dict[str, Any]:
         """Return plain data."""
         rows = [
-            {"regime": one.draw.regime.value, "state": one.draw.state.name, "faults": one.draw.told(),
+            {"regime": one.draw.regime.value, "state": one.draw.state.name, "faults": one.draw.in_words(),
              "reason": one.reason, "travel": one.travel, "budget": one.draw.budget, "seed": one.seed}
             for one in self.worst(len(self.found))
         ]  # fmt: skip
@@ -95,7 +95,7 @@ def search(
         result.found += [_found(entry) for entry in tried]  # as they will be read, so that a search goes on as it would
         worst = result.worst(1)[0]
         sizes = f"{worst.travel * 1e6:.1f} um of {worst.draw.budget * 1e6:g}"
-        say(f"{len(result.found)} draws, worst {sizes}, {worst.draw.state.name}: {worst.draw.told()}")
+        say(f"{len(result.found)} draws, worst {sizes}, {worst.draw.state.name}: {worst.draw.in_words()}")
     return result
 
 

@@ -91,7 +91,7 @@ class Fault:
         return make_request(component=self.component, fault=self.shape.kind, start=self.onset * period, duration=LASTS,
                             parameters=parameters)  # fmt: skip
 
-    def told(self, regime: Regime, digits: int) -> str:
+    def in_words(self, regime: Regime, digits: int) -> str:
         """Return the fault in words."""
         request = self.request(regime, 0.002)
         sizes = "".join(f" {name} {value:.{digits}g}" for name, value in request.parameters.items())
@@ -118,13 +118,13 @@ class Draw:
         """Whether motion is paused."""
         return self.state.operating is OperatingState.PAUSED
 
-    def told(self, digits: int = 5) -> str:
+    def in_words(self, digits: int = 5) -> str:
         """Return the faults in words, with sizes of so many digits."""
-        return "; ".join(fault.told(self.regime, digits) for fault in self.faults)
+        return "; ".join(fault.in_words(self.regime, digits) for fault in self.faults)
 
     def line(self, digits: int = 5) -> str:
         """Return the draw as a line of a table, which `search.words` reads."""
-        return f"{self.regime.value} | {self.state.name} | {self.told(digits)}"
+        return f"{self.regime.value} | {self.state.name} | {self.in_words(digits)}"
 
 
 def drawn(random: Random, regime: Regime) -> Draw:

@@ -56,11 +56,11 @@ def fitted_view(arm: Arm, q: Array, measured: Array, run: Labels, floor: Array, 
     at = postures(arm, q)
     view = ArmView(np.zeros(len(q)), arm, q, at, *sight.start(at.tip, measured, run), sight)
     for _ in range(ROUNDS):
-        columns = set_up(view, "told") / floor[:, None]
+        columns = set_up(view, "identified") / floor[:, None]
         columns = columns.reshape(-1, columns.shape[2])
         error = (sight.error(view.pose, measured) / floor).ravel()
         step = np.zeros(12)
-        step[list(sight.told)] = np.linalg.lstsq(columns, error, rcond=1e-9)[0][: len(sight.told)]
+        step[list(sight.identified)] = np.linalg.lstsq(columns, error, rcond=1e-9)[0][: len(sight.identified)]
         base = transform(step[3:6], Rotation.from_rotvec(step[:3]).as_matrix()) @ view.base
         body = view.body @ transform(step[9:], Rotation.from_rotvec(step[6:9]).as_matrix())
         view = ArmView(view.warmth, arm, q, at, base, body, sight)

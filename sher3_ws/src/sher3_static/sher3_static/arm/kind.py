@@ -117,7 +117,7 @@ class ArmKind(TableKind[ArmDescription]):
             pages=self.library(),
             places={"joint": known.arm.turning},
             rotary=frozenset(known.arm.turning),
-            free=set_up(view, "told"),
+            free=set_up(view, "identified"),
             zeros=set_up(view, "moved"),
         )
         return [table]

@@ -27,15 +27,15 @@ class Sight(ABC):
     Attributes:
         column: of the readings that it gives.
         what: it measures, in a word.
-        told: of the twelve numbers of the two frames (turn and shift of the measuring frame, then of the body) those
-            that it can tell.
+        identified: those of the twelve numbers of the two frames (turn and shift of the measuring frame, then of the
+            body) that it can tell.
         moved: those of them that differ from run to run when the instrument was set up again.
         zero: whether it has a zero of its own.
     """
 
     column: ClassVar[str]
     what: ClassVar[str]
-    told: ClassVar[Sequence[int]]
+    identified: ClassVar[Sequence[int]]
     moved: ClassVar[Sequence[int]]
     zero: ClassVar[bool]
 
@@ -60,7 +60,7 @@ class PoseSight(Sight):
     """A tracker of six components: position, and orientation as far as its noise is stated."""
 
     column, what, zero = "poses", "position", False
-    told, moved = range(12), range(6)
+    identified, moved = range(12), range(6)
 
     def floor(self, noise: float, noise_rotation: float | None) -> Array:
         """Return the noise (6,) of positions, m, and of orientations, rad, which without one are not judged."""
@@ -84,7 +84,7 @@ class PositionSight(Sight):
     """A tracker of one target: three components, and no orientation."""
 
     column, what, zero = "positions", "position", False
-    told, moved = (0, 1, 2, 3, 4, 5, 9, 10, 11), range(6)
+    identified, moved = (0, 1, 2, 3, 4, 5, 9, 10, 11), range(6)
 
     def floor(self, noise: float, noise_rotation: float | None) -> Array:
         """Return the noise (3,) of a position, m."""
@@ -113,7 +113,7 @@ class LengthSight(Sight):
     """A cable or a ball bar from one point: its length alone, with a zero of its own."""
 
     column, what, zero = "lengths", "length", True
-    told, moved = (3, 4, 5, 9, 10, 11), ()
+    identified, moved = (3, 4, 5, 9, 10, 11), ()
 
     def floor(self, noise: float, noise_rotation: float | None) -> Array:
         """Return the noise (1,) of a length, m."""

@@ -62,8 +62,8 @@ def draft_test(path: Path, tables: Tables) -> Draft | None:
         tables: what it holds.
     """
     flat = {n: x for n, x in tables.items() if x.ndim == 1}
-    told = one(flat, CYCLE) is not None or one(flat, SIDE) is not None
-    found = None if any(tells_time(n) for n in flat) and not told else _columns(flat)
+    of_a_test = one(flat, CYCLE) is not None or one(flat, SIDE) is not None
+    found = None if any(tells_time(n) for n in flat) and not of_a_test else _columns(flat)
     if found is None:
         return None
     target, read = found

@@ -50,7 +50,7 @@ def ranking(table: Table, attribution: Attribution) -> list[str]:
 def contributions(table: Table, attribution: Attribution) -> list[tuple[str, str, Array]]:
     """Return each cause with its site and what it adds to every row, (g,), m or rad."""
     out = []
-    for term, found in attribution.told:
+    for term, found in attribution.named:
         columns = term.effect.signature(table.view, term.site, term.shape).columns[table.channel]
         out.append((term.effect.id, term.site, columns[:, 0] @ found))
     return out

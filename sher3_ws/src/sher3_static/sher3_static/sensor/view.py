@@ -141,9 +141,9 @@ class TurnedView(SensorView):
     def in_words(self) -> list[str]:
         """Return the load as stated or identified, and what an identified one leaves open."""
         load = self.load_in_words(0.0, np.zeros(3))
-        told = "the mass was identified from the readings: a scale of all forces cannot be told from it"
+        own_mass = "the mass was identified from the readings: a scale of all forces cannot be told from it"
         turned = f"the load turns as readings in the frame of the {self.found_in} do: `expressed_in: {self.found_in}`"
-        return [load] * bool(load) + [told] * self.identified + [turned] * bool(self.found_in)
+        return [load] * bool(load) + [own_mass] * self.identified + [turned] * bool(self.found_in)
 
 
 @dataclass(frozen=True, eq=False)

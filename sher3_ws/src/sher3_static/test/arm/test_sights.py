@@ -75,9 +75,9 @@ def test_the_columns_of_the_set_up_are_what_small_moves_do(sight):
         moved = view.pose.copy()
         moved[:, :3, 3] += 1e-6 * frame_columns(view)[:, :3, column]
         change = view.sight.error(view.pose, data["p"]) - view.sight.error(moved, data["p"])
-        if column in view.sight.told:
-            place = list(view.sight.told).index(column)
-            np.testing.assert_allclose(change / 1e-6, set_up(view, "told")[:, :, place], atol=1e-5)
+        if column in view.sight.identified:
+            place = list(view.sight.identified).index(column)
+            np.testing.assert_allclose(change / 1e-6, set_up(view, "identified")[:, :, place], atol=1e-5)
 
 
 def test_one_of_the_three_is_stated():

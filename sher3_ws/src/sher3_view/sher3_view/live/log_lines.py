@@ -25,7 +25,7 @@ class LogLines:
     """Turns statuses and diagnostics into lines, each once while it lasts."""
 
     def __init__(self) -> None:
-        self._told: dict[str, str] = {}
+        self._last: dict[str, str] = {}
 
     def status(self, topic: str, status: Mapping[str, Any]) -> list[Line]:
         """Return the lines of a status: a new fault, a new refusal."""
@@ -48,7 +48,7 @@ class LogLines:
         return self._new(f"diagnostic {name}", WARNING if level == 1 else ERROR, speaker, text)
 
     def _new(self, key: str, level: int, name: str, text: str) -> list[Line]:
-        if self._told.get(key, "") == text:
+        if self._last.get(key, "") == text:
             return []
-        self._told[key] = text
+        self._last[key] = text
         return [Line(level, f"sher3.{name}", text)] if text else []

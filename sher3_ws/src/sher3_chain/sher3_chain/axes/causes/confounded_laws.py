@@ -34,14 +34,14 @@ def indistinct() -> dict[str, tuple[str, ...]]:
     return {e.id: e.indistinct for e in pages("servo") if e.indistinct}
 
 
-def told_by_travel(evidence: Evidence, found: Attribution) -> Attribution:
+def parted_by_travel(evidence: Evidence, found: Attribution) -> Attribution:
     """Return the causes without the spring, or the weight at an arm, whichever leaves markedly more than the other.
 
     Both laws are exact, and over a travel of 2 rad they part by 0.4 % of the gap: what a further cause must be worth.
     """
     rivals, ranking = list(found.rivals), list(found.ranking)
     for i in found.causes:
-        share = found.fit.terms[i].effect.told_by_travel
+        share = found.fit.terms[i].effect.parted_by_travel
         if share:
             most = found.fit.total + max(NEEDED, share * found.explained[i])
             rivals[i], ranking[i] = (_close(fits, found.fit.terms[i], most) for fits in (rivals[i], ranking[i]))
@@ -51,7 +51,7 @@ def told_by_travel(evidence: Evidence, found: Attribution) -> Attribution:
 def _close(fits: Sequence[Fit], own: Term, most: float) -> tuple[Fit, ...]:
     """Return the fits without those of another law that the travel tells from a cause, by their loss."""
     others = ((f, f.terms[-1].effect) for f in fits)
-    return tuple(f for f, e in others if not e.told_by_travel or e.id == own.effect.id or f.total < most)
+    return tuple(f for f, e in others if not e.parted_by_travel or e.id == own.effect.id or f.total < most)
 
 
 def with_dead_band(causes: Sequence[Cause]) -> list[Cause]:
@@ -72,12 +72,12 @@ def with_second_pole(causes: Sequence[Cause]) -> list[Cause]:
 
 
 def _second_pole(cause: Cause) -> Cause:
-    told = cause.parameters
-    lag, delay = told["time_constant"], told["delay"]
-    seen = told["inertia"].value / lag.value if "inertia" in told else 0.0
+    parameters = cause.parameters
+    lag, delay = parameters["time_constant"], parameters["delay"]
+    seen = parameters["inertia"].value / lag.value if "inertia" in parameters else 0.0
     hidden = max(SECOND_POLE * lag.value - seen, 0.0)
     wider = {"time_constant": _wider(lag, 0.0, hidden), "delay": _wider(delay, min(hidden, delay.value), 0.0)}
-    return cause.model_copy(update={"parameters": {**told, **wider}})
+    return cause.model_copy(update={"parameters": {**parameters, **wider}})
 
 
 def _wider(p: Parameter, below: float, above: float) -> Parameter:

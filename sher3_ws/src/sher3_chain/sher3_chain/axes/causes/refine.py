@@ -55,10 +55,10 @@ def refine_free(evidence: AxisEvidence, causes: list[Cause]) -> tuple[AxisEviden
     if best.fun >= loss(start):
         return evidence, causes
     mass, refined = changed(best.x)
-    told = all(_holds(causes[i].parameters[n], refined[i].parameters[n].value) for i, n in names)
+    agrees = all(_holds(causes[i].parameters[n], refined[i].parameters[n].value) for i, n in names)
     if with_mass and evidence.mass_interval is not None:
-        told &= evidence.mass_interval[0] <= mass <= evidence.mass_interval[1]
-    return (replace(evidence, mass=mass), refined) if told else (evidence, causes)
+        agrees &= evidence.mass_interval[0] <= mass <= evidence.mass_interval[1]
+    return (replace(evidence, mass=mass), refined) if agrees else (evidence, causes)
 
 
 def _holds(parameter: Parameter, value: float) -> bool:

@@ -149,7 +149,7 @@ def _best(blocks: Array) -> tuple[float, list[int]]:
 
 def mass_of(views: Sequence[AxisView]) -> float:
     """Return the mass that the records tell, whatever its error, kg or kg m^2; 0 without samples in motion."""
-    return _told(views).get(0, 0.0)
+    return _coefficients(views).get(0, 0.0)
 
 
 def braking_time(views: Sequence[AxisView]) -> float:
@@ -157,16 +157,16 @@ def braking_time(views: Sequence[AxisView]) -> float:
 
     A weight or a spring tells the mass from a lag.
     """
-    found = _told(views)
+    found = _coefficients(views)
     return np.inf if BY_PLACE[0] in found or not found.get(1, 0.0) > 0.0 else max(found[0], 0.0) / found[1]
 
 
 def load_mass_of(views: Sequence[AxisView]) -> float:
     """Return the mass that moves with the second encoder, kg or kg m^2; 0 where the records do not tell it."""
-    return 0.0 if any(view.run.load is None for view in views) else max(_told(views).get(BEHIND, 0.0), 0.0)
+    return 0.0 if any(view.run.load is None for view in views) else max(_coefficients(views).get(BEHIND, 0.0), 0.0)
 
 
-def _told(views: Sequence[AxisView]) -> dict[int, float]:
+def _coefficients(views: Sequence[AxisView]) -> dict[int, float]:
     """Return column -> its coefficient, of the columns that are worth it; none without samples in motion."""
     x, y = _rows(views)
     if len(y) < BLOCKS:

@@ -114,11 +114,11 @@ def beyond_motion(causes: Iterable[Cause]) -> list[str]:
     """Return in words what would tell causes apart that no motion tells apart, once for all places."""
     found: dict[tuple[str, str], list[str]] = {}
     for cause in causes:
-        for effects, told in alike_in_motion(cause):
-            found.setdefault((_listed([e.replace("_", " ") for e in effects]), told), []).append(cause.actuator)
+        for effects, remedy in alike_in_motion(cause):
+            found.setdefault((_listed([e.replace("_", " ") for e in effects]), remedy), []).append(cause.actuator)
     return [
-        f"no motion tells {names} on {', '.join(dict.fromkeys(sites))} apart, {told}"
-        for (names, told), sites in found.items()
+        f"no motion tells {names} on {', '.join(dict.fromkeys(sites))} apart, {remedy}"
+        for (names, remedy), sites in found.items()
     ]
 
 

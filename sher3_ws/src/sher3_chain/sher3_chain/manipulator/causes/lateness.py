@@ -67,11 +67,11 @@ class Late(NamedTuple):
     @property
     def shapes(self) -> list[Shape]:
         """Estimate and standard error of the delay, s, each with another delay within the interval to take off."""
-        told = {"told": self.delay, "error": float(np.hypot(self.half / JACKKNIFE, IDEAL * self.delay))}
-        return [{**told, "delay": self.delay + share * self.half} for share in WITHIN]
+        estimate = {"estimate": self.delay, "error": float(np.hypot(self.half / JACKKNIFE, IDEAL * self.delay))}
+        return [{**estimate, "delay": self.delay + share * self.half} for share in WITHIN]
 
     @property
-    def told(self) -> bool:
+    def significant(self) -> bool:
         """Whether the record tells that the effort is late or early at all."""
         return abs(self.delay) > SURE * self.half
 
@@ -86,9 +86,9 @@ def with_closure(cause: Cause, shape: Shape) -> Cause:
 
     Its channel need not show a gap: the delay is then below the floor.
     """
-    if "told" not in shape:
+    if "estimate" not in shape:
         return cause
-    left = (shape["error"] / shape["told"]) ** 2
+    left = (shape["error"] / shape["estimate"]) ** 2
     closure = Interval(value=1.0 - left, low=1.0 - JACKKNIFE**2 * left, high=1.0)
     return cause.model_copy(update={"closure": closure})
 
@@ -99,15 +99,21 @@ def with_late_readings(cause: Cause) -> Cause:
     return cause.model_copy(update={"rivals": rivals})
 
 
-def acting_late(cause: Cause, told: Collection[str]) -> Cause:
+def acting_late(cause: Cause, commanded: Collection[str]) -> Cause:
     """Return an effort that comes before its motion as a command that acts late, where it is what the drive was told.
 
     Args:
         cause: of a joint.
-        told: joints whose command stands for the effort, which nobody measured.
+        commanded: joints whose command stands for the effort, which nobody measured.
     """
     early = cause.parameters.get(LATE)
-    if cause.actuator not in told or early is None or early.value >= 0.0 or early.low is None or early.high is None:
+    if (
+        cause.actuator not in commanded
+        or early is None
+        or early.value >= 0.0
+        or early.low is None
+        or early.high is None
+    ):
         return cause
     page = computed(OF_LAW)
     late = early.model_copy(update={"value": -early.value, "low": -early.high, "high": -early.low})

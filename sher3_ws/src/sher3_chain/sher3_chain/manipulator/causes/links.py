@@ -19,8 +19,8 @@ from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.fit.fitting import Fit, Term, fit, make_term
 from sher3_diagnosis.fit.gram import products
 from sher3_diagnosis.fit.solving import solve
+from sher3_diagnosis.fit.standardised import Standardised
 from sher3_diagnosis.fit.term import again
-from sher3_diagnosis.fit.whitened import Whitened
 from sher3_diagnosis.quantify.jackknife import standard_error
 from sher3_diagnosis.thresholds import JACKKNIFE, NEEDED, PRICE
 from sher3_diagnosis.verdict import Cause
@@ -138,7 +138,7 @@ def balanced(evidence: ArmMotionEvidence, left: Mapping[Channel, float]) -> Evid
     data = evidence.data
     floors = [{c: x * max(left[c], 1.0) ** 0.5 for c, x in found.items() if c in left} for found in data.floors]
     residuals = [{c: x for c, x in found.items() if c in left} for found in data.residuals]
-    return replace(evidence, data=Whitened(data.views, residuals, floors), nuisance=())
+    return replace(evidence, data=Standardised(data.views, residuals, floors), nuisance=())
 
 
 def _measured(found: Fit, index: int) -> dict[str, Measured]:
@@ -169,13 +169,15 @@ def _entered(evidence: Evidence, page: Effect, plain: Sequence[Term]) -> list[Te
     first = {link: len(columns) + len(names) * i for i, link in enumerate(whole)}
     worth, taken = _worth(normal, right, columns), dict[str, list[int]]()
     while len(taken) < len(whole):
-        told = {link: _told(normal, columns, at, len(names)) for link, at in first.items() if link not in taken}
-        gains = {link: _worth(normal, right, [*columns, *new]) for link, new in told.items()}
+        columns_of = {
+            link: _identifiable(normal, columns, at, len(names)) for link, at in first.items() if link not in taken
+        }
+        gains = {link: _worth(normal, right, [*columns, *new]) for link, new in columns_of.items()}
         best = max(gains, key=lambda link: gains[link])
         if gains[best] - worth < NEEDED:
             break
-        taken[best], worth = told[best], gains[best]
-        columns += told[best]
+        taken[best], worth = columns_of[best], gains[best]
+        columns += columns_of[best]
     shapes = {link: {names[i - first[link]]: 1.0 for i in new} for link, new in taken.items()}
     return [make_term(evidence.data, page, link, shape) for link, shape in shapes.items()]
 
@@ -192,13 +194,13 @@ def _worth(normal: Array, right: Array, columns: Sequence[int]) -> float:
     return float(right[at] @ solve(normal[np.ix_(at, at)], right[at])) - PRICE * len(at)
 
 
-def _told(normal: Array, columns: Sequence[int], first: int, count: int) -> list[int]:
+def _identifiable(normal: Array, columns: Sequence[int], first: int, count: int) -> list[int]:
     """Return those of `count` columns of a link of which enough is left beside others and those before them."""
-    told: list[int] = []
+    kept: list[int] = []
     for j in range(first, first + count):
-        beside = np.array([*columns, *told], dtype=int)
+        beside = np.array([*columns, *kept], dtype=int)
         length = normal[j, j]
         left = length - normal[j, beside] @ solve(normal[np.ix_(beside, beside)], normal[beside, j])
         if length > 0.0 and left > CONFOUNDED**2 * length:
-            told.append(j)
-    return told
+            kept.append(j)
+    return kept

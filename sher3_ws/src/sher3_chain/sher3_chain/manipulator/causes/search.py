@@ -138,13 +138,13 @@ def _beside_delay(
     where a dry friction is no matter of a moment.
     """
     others = [e for e in effects if e.family != TIMING or e.id == computed(OF_LAW).id]
-    if late is not None and late.told and not late.sure:
+    if late is not None and late.significant and not late.sure:
         return _searched(own, effects, say, [replace(plan, together=False) for plan in plans])
     found = _searched(own, others, say, plans)
     if late is None or not late.sure:
         return found
     site = own.places["axis"][0]
-    page = computed(LATE).told()
+    page = computed(LATE).at_estimate()
     trials = [make_term(own.data, page, site, shape) for shape in late.shapes]
     best = min(trials, key=lambda term: fit(own.data, [*found.fit.terms, term]).total)
     beside = _searched(replace(own, nuisance=(best,)), others, say, plans)

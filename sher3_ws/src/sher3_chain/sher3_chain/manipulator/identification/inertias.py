@@ -59,7 +59,7 @@ class Inertias(NamedTuple):
         each = zip(joints, self.rotors, strict=True)
         return [j.model_copy(update={"step_inertia": j.step_inertia + float(x)}) for j, x in each]
 
-    def told(self, model: ArmModel) -> list[Identified]:
+    def by_place(self, model: ArmModel) -> list[Identified]:
         """Return them by place, as a verdict has them."""
         links = [
             dict(zip(LINK, map(_parameter, value, error, UNITS), strict=True))

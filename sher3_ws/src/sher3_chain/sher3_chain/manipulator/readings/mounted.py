@@ -48,12 +48,14 @@ def mounted(
         return None
     if model.losses is not None or not rows or not size:
         return None
-    q, v, a, effort, told = thinned(views)
+    q, v, a, effort, judged = thinned(views)
     weightless = replace(model, tree=replace(model.tree, gravity=np.zeros(3)))
     free = weightless.needed(q, v, a)
     pulls = [replace(model, tree=replace(model.tree, gravity=g)).weight(q) for g in np.eye(3)]
     each = [np.column_stack([effort[:, i] - free[:, i], *(x[:, i] for x in pulls)]) for i in rows]
-    joints = [_beside_own(v[told[:, i], i], a[told[:, i], i], x[told[:, i]]) for i, x in zip(rows, each, strict=True)]
+    joints = [
+        _beside_own(v[judged[:, i], i], a[judged[:, i], i], x[judged[:, i]]) for i, x in zip(rows, each, strict=True)
+    ]
     joints = [x for x in joints if np.any(x[:, 0])]
     if not joints:
         return None
@@ -64,7 +66,7 @@ def mounted(
         return None
     new = size * direction
     left = effort - free - np.einsum("kni,k->ni", np.array(pulls), new)
-    gives_energy = sum(float(np.sign(np.sum((v * left)[told[:, i], i]))) for i in rows) < 0.0
+    gives_energy = sum(float(np.sign(np.sum((v * left)[judged[:, i], i]))) for i in rows) < 0.0
     clearer = _left(joints, model.tree.gravity) - _left(joints, new) > CLEARER
     return new if clearer and not gives_energy else None
 

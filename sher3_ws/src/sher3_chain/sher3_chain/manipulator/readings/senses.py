@@ -47,8 +47,8 @@ def against_model(
     stated = [isinstance(joint.gain, float) for joint in described.joints]
     if described.coupling is not None or described.inertias != "nominal" or not rows:
         return ()
-    q, v, a, effort, told = thinned(views)
-    rows = [i for i in rows if effort[told[:, i], i].any()]
+    q, v, a, effort, judged_at = thinned(views)
+    rows = [i for i in rows if effort[judged_at[:, i], i].any()]
     if not rows or not v.any():
         return ()
 
@@ -56,7 +56,7 @@ def against_model(
         needed = model.needed(senses * q, senses * v, senses * a)
         return sum(
             _left(needed[ok, i], senses[i] * v[ok, i], senses[i] * effort[ok, i], stated[i])
-            for i, ok in zip(rows, told[:, rows].T, strict=True)
+            for i, ok in zip(rows, judged_at[:, rows].T, strict=True)
         )
 
     k = len(described.joints)
@@ -88,10 +88,10 @@ def thinned(views: Sequence[MotionView]) -> tuple[Array, Array, Array, Array, Ma
     for view in views:
         inner = np.flatnonzero(view.run.inner)
         at = inner[:: max(1, len(inner) * len(views) // POSTURES)]
-        told = np.column_stack([view.in_motion(row)[at] for row in range(len(view.joints))])
-        parts.append((view.position[at], view.velocity[at], view.acceleration[at], view.effort[at], told))
-    q, v, a, effort, told = (np.concatenate(x) for x in zip(*parts, strict=True))
-    return q, v, a, effort, told
+        judged = np.column_stack([view.in_motion(row)[at] for row in range(len(view.joints))])
+        parts.append((view.position[at], view.velocity[at], view.acceleration[at], view.effort[at], judged))
+    q, v, a, effort, judged = (np.concatenate(x) for x in zip(*parts, strict=True))
+    return q, v, a, effort, judged
 
 
 def _left(needed: Array, v: Array, effort: Array, stated: bool) -> float:

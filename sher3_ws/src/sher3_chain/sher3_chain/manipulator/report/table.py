@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 
 from sher3_diagnosis.effect import Effect
-from sher3_diagnosis.report.summary import significant, told
+from sher3_diagnosis.report.summary import shown_parameters, significant
 from sher3_diagnosis.reporter import EMPTY, Table
 from sher3_diagnosis.verdict import Cause
 from sher3_diagnosis.words import place, quantity, range_text, words
@@ -57,15 +57,15 @@ def head_of(cause: Cause, sets: Mapping[str, str]) -> str:
 
 def cell(cause: Cause, sets: Mapping[str, str]) -> str:
     """Return a cause with what it sets of constants, else its first parameter, with intervals and rivals."""
-    parameters = told(cause)
+    parameters = shown_parameters(cause)
     sizes = {n: p for n, p in parameters.items() if significant(p)} or parameters
     names = [n for n in sizes if n in sets] or list(sizes)[:1]
     text, shown = words(cause.effect), []
     for name in names:
         p, label = sizes[name], f"{name.replace('_', ' ')} " * (len(names) > 1)
         interval = "" if p.low is None else f" ({range_text(p.low, p.high, p.unit)})"
-        untold = "" if significant(p) else ", size not told"
-        shown.append(f"{label}{p.means or quantity(p.value, p.unit)}{interval}{untold}")
+        open_size = "" if significant(p) else ", size not told"
+        shown.append(f"{label}{p.means or quantity(p.value, p.unit)}{interval}{open_size}")
     text += f" {', '.join(shown)}" if shown else ""
     text += f" in {cause.condition}" if cause.condition else ""
     return text + (f" or {', '.join(words(r).lower() for r in cause.rivals)}" if cause.rivals else "")

@@ -47,12 +47,12 @@ class Typical(BaseModel):
 
 def distance(x: np.ndarray, covariance: np.ndarray) -> float:
     """Return the Mahalanobis distance of scaled inputs (p,) per input that is there (the others are NaN)."""
-    told = np.isfinite(x)
-    if not told.any():
+    known = np.isfinite(x)
+    if not known.any():
         return 0.0
-    within = covariance[np.ix_(told, told)] + RIDGE * np.eye(int(told.sum()))
-    square = float(x[told] @ np.linalg.solve(within, x[told]))  # pairs that are seldom told may make it negative
-    return math.sqrt(max(square, 0.0) / int(told.sum()))
+    within = covariance[np.ix_(known, known)] + RIDGE * np.eye(int(known.sum()))
+    square = float(x[known] @ np.linalg.solve(within, x[known]))  # pairs that are seldom told may make it negative
+    return math.sqrt(max(square, 0.0) / int(known.sum()))
 
 
 def trust(typicality: float | None) -> float:

@@ -46,9 +46,9 @@ def stray_share(left: Array, own: Array) -> float:
         stray = stray * _step(x, np.ones_like(u), 1.0 + stray + bend * u)
         bend = bend * _step(x, u, 1.0 + stray + bend * u)
     gain = _surprise(x, np.broadcast_to(1.0 + excess, x.shape)) - _surprise(x, 1.0 + stray + bend * u)
-    told = gain > 0.5 * math.log(len(x))
+    distinct = gain > 0.5 * math.log(len(x))
     whole = float((stray + bend).sum())
-    return float(np.where(told, stray, stray + bend).sum() / whole) if whole > 0.0 else 1.0
+    return float(np.where(distinct, stray, stray + bend).sum() / whole) if whole > 0.0 else 1.0
 
 
 def _surprise(x: Array, variance: Array) -> Array:

@@ -9,8 +9,8 @@ from typing import Protocol, runtime_checkable
 import numpy as np
 from numpy.typing import NDArray
 
+from sher3_diagnosis.attribute.constancy import constancy_of
 from sher3_diagnosis.attribute.rivals import Attribution, without_term
-from sher3_diagnosis.attribute.steadiness import steadiness_of
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.effect import Effect
 from sher3_diagnosis.evidence import Evidence
@@ -96,17 +96,19 @@ def cause_evidence(evidence: Evidence, attribution: Attribution, index: int) -> 
     fitted = found if moving is None else moving.whole
     remainder = remains(evidence, fitted, index, channel)
     left, own = excess_of(evidence, channel, remainder), added(fitted, index, channel, remainder)
-    told = all(isinstance(evidence.views[r], Felt) for r in remainder)
-    taken = free_laws(evidence, channel, inputs_of(attribution, channel), remainder) if told else (None, None, None)
+    has_inputs = all(isinstance(evidence.views[r], Felt) for r in remainder)
+    taken = (
+        free_laws(evidence, channel, inputs_of(attribution, channel), remainder) if has_inputs else (None, None, None)
+    )
     law, place, anything = (None if x is None else (left - x * samples) / gap for x in taken)
-    steady = steadiness_of(evidence, found, index)
+    steady = constancy_of(evidence, found, index)
     before = residual_after(evidence, without, channel)
     whole = gap_of(evidence, channel, before)
     assert whole is not None
     return CauseEvidence(
         left=left / gap,
         part=min(1.0, gap / max(evidence.excess(channel), gap)),
-        stray=left / gap * stray_share(whitened(evidence, channel, remainder), own),
+        stray=left / gap * stray_share(standardised(evidence, channel, remainder), own),
         law=law,
         place=place,
         anything=anything,
@@ -120,10 +122,10 @@ def cause_evidence(evidence: Evidence, attribution: Attribution, index: int) -> 
 
 def power_of(evidence: Evidence, channel: Channel, left: Mapping[int, Array]) -> float:
     """Return the power over the floor of residuals {run: (N, d)} in SI units, less one, of the component with most."""
-    return float(np.mean(whitened(evidence, channel, left) ** 2, axis=0).max()) - 1.0
+    return float(np.mean(standardised(evidence, channel, left) ** 2, axis=0).max()) - 1.0
 
 
-def whitened(evidence: Evidence, channel: Channel, left: Mapping[int, Array]) -> Array:
+def standardised(evidence: Evidence, channel: Channel, left: Mapping[int, Array]) -> Array:
     """Return residuals {run: (N, d)} in SI units over their floor, one run after another -> (n, d)."""
     return np.concatenate([x / evidence.floors[r][channel] for r, x in left.items()])
 

@@ -109,11 +109,11 @@ def telling(inputs: Array, y: Array, kept: int = KEPT) -> NDArray[np.int64]:
     """Return the columns of inputs (n, k) that alone tell most of y (n,)."""
     if inputs.shape[1] <= kept:
         return np.arange(inputs.shape[1])
-    gains = [_told(column, y) for column in inputs.T]
+    gains = [_explained(column, y) for column in inputs.T]
     return np.argsort(gains)[::-1][:kept]
 
 
-def _told(column: Array, y: Array) -> float:
+def _explained(column: Array, y: Array) -> float:
     edges = np.quantile(column, np.linspace(0.0, 1.0, BINS + 1)[1:-1])
     cell = np.searchsorted(edges, column)
     count = np.bincount(cell, minlength=BINS)

@@ -101,8 +101,8 @@ def unexplained(numbers: Mapping[str, float], of: str = "left", least: float = 0
         least: share of the gap that is nothing, whatever explains it; what is below the floor is nothing either.
     """
     left, anything = (beside_others(_share(numbers[name]), numbers) for name in (of, "anything"))
-    told = max(0.0, left - max(anything, least)) / max(left, least, 1.0 / max(numbers["power"], 1.0))
-    return max(1.0 - told, LEAST_OWN)
+    explained = max(0.0, left - max(anything, least)) / max(left, least, 1.0 / max(numbers["power"], 1.0))
+    return max(1.0 - explained, LEAST_OWN)
 
 
 def _foreign(numbers: Mapping[str, float]) -> dict[str, float]:

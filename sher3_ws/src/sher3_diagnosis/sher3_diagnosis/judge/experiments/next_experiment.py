@@ -12,7 +12,7 @@ from itertools import groupby
 
 from sher3_diagnosis.finding import Finding, Judged
 from sher3_diagnosis.judge.bets import LISTED, term_of
-from sher3_diagnosis.judge.experiments.foretold import LABELLED
+from sher3_diagnosis.judge.experiments.prediction import LABELLED
 from sher3_diagnosis.judge.experiments.prospect import Prospect, Rivals, sharing
 from sher3_diagnosis.machine import Machine, Rehearsal
 from sher3_diagnosis.verdict import NextExperiment
@@ -28,7 +28,7 @@ def next_experiment(machine: Machine, finding: Finding) -> NextExperiment | None
 
     Where the machine rehearses none, it is the excitation that shows the closest rival best, and nothing is foretold.
     """
-    whole, named = finding.with_all, {term.key for term, _ in finding.attribution.told}
+    whole, named = finding.with_all, {term.key for term, _ in finding.attribution.named}
     judged = next((j for j in finding.judged if _open(j) and term_of(whole, j, 0).key in named), None)
     if judged is None:
         return None
@@ -56,8 +56,8 @@ def best_of(machine: Machine, finding: Finding, judged: Judged) -> tuple[Rehears
     rivals = Rivals.of(finding, judged)
     rehearsals = machine.of(finding.evidence).rehearsals(finding.evidence)
     for _, tries in groupby(rehearsals, key=lambda x: (x.added, x.elsewhere)):
-        told = [(x, rivals.prospect(x.data)) for x in tries]
-        likeliest = max(told, key=lambda t: (min(t[1].odds, enough), t[1].separation))
+        prospects = [(x, rivals.prospect(x.data)) for x in tries]
+        likeliest = max(prospects, key=lambda t: (min(t[1].odds, enough), t[1].separation))
         if best is None or likeliest[1].odds > best[1].odds + LISTED:
             best = likeliest
         if best[1].odds >= enough:

@@ -16,12 +16,12 @@ from sher3_diagnosis.attribute.candidates import possible
 from sher3_diagnosis.attribute.rivals import unlikeness
 from sher3_diagnosis.finding import Finding, Judged
 from sher3_diagnosis.fit.fitting import Fit, Term, connected, fit, make_term
+from sher3_diagnosis.fit.standardised import Standardised
 from sher3_diagnosis.fit.term import again
 from sher3_diagnosis.fit.tolerance import AsBuilt
-from sher3_diagnosis.fit.whitened import Whitened
 from sher3_diagnosis.judge.bets import LISTED, term_of
 from sher3_diagnosis.judge.calibration.calibration import in_force
-from sher3_diagnosis.judge.experiments.foretold import foretold, with_bend
+from sher3_diagnosis.judge.experiments.prediction import predicted, with_bend
 from sher3_diagnosis.judge.probabilities import shares_of
 
 FORMS = 10
@@ -62,7 +62,7 @@ class Rivals:
     """A cause and its rivals in all forms of their laws that explain the recorded runs as well."""
 
     judged: Judged
-    data: Whitened
+    data: Standardised
     laws: Sequence[Law]
 
     @classmethod
@@ -86,7 +86,7 @@ class Rivals:
         return cls(judged, data, laws)
 
     def prospect(
-        self, more: Whitened, levels: Sequence[float] = (0.0,), built: Sequence[Term] | None = None
+        self, more: Standardised, levels: Sequence[float] = (0.0,), built: Sequence[Term] | None = None
     ) -> Prospect:
         """Return what further runs would make of the odds.
 
@@ -108,7 +108,7 @@ class Rivals:
         for law, own in zip(self.laws, added, strict=True):
             samples = sum(n for (_, c), n in more.samples.items() if c in own.channels)
             for level in levels:
-                both = self.data.with_runs(more, foretold(law.found, [*beside, own], more, level))
+                both = self.data.with_runs(more, predicted(law.found, [*beside, own], more, level))
                 best = self._best([fit(both, [*joined, *t]) for t in tried])
                 after = best.pop(law.effect)
                 worth = fit(both, joined).total - after.total
@@ -138,7 +138,7 @@ def _beside(terms: Sequence[Term], laws: Sequence[Term]) -> list[Term]:
     return [t for i, t in enumerate(terms) if i in near]
 
 
-def _forms(data: Whitened, term: Term) -> list[Term]:
+def _forms(data: Standardised, term: Term) -> list[Term]:
     """Return a term and the other forms of its law; one of many stays as it is."""
     shapes = [s for s in term.effect.shapes(data.views, term.site) if s != term.shape]
     return [term, *(make_term(data, term.effect, term.site, s) for s in shapes if len(shapes) < FORMS)]

@@ -17,7 +17,7 @@ from sher3_description import ACTUATORS, Robot
 from sher3_diagnosis.channel import Array, Channel, Mask, Residual
 from sher3_diagnosis.discover.feature import Quantities, Quantity
 from sher3_diagnosis.evidence import Evidence
-from sher3_diagnosis.fit.whitened import Whitened
+from sher3_diagnosis.fit.standardised import Standardised
 
 from sher3_gap.signals import RunSignals
 from sher3_gap.stages.exact.law import controller_error, delayed, host_law, transport_error
@@ -114,7 +114,7 @@ def exact_evidence(runs: Sequence[RunSignals], robot: Robot, stage: str) -> Evid
     ]
     floors = [{c: FLOOR * size[[i]] for c, i in channels.items()} for _ in views]
     units = {c: speed_unit(c.actuator) for c in channels}
-    return Evidence([v.run.excitation for v in views], Whitened(views, residuals, floors), units, {})
+    return Evidence([v.run.excitation for v in views], Standardised(views, residuals, floors), units, {})
 
 
 def _errors(views: Sequence[ExactView]) -> Iterator[tuple[ExactView, Array]]:

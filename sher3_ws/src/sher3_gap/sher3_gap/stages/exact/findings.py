@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from sher3_diagnosis.finding import ExactFinding
-from sher3_diagnosis.thresholds import EXACT_UNTOLD
+from sher3_diagnosis.thresholds import EXACT_UNTIMED
 from sher3_diagnosis.verdict import Cause, Interval, Parameter, Residual, Where
 from sher3_effects import Page, computed
 
@@ -22,7 +22,7 @@ def exact_place(stage: str, actuator: str, gap: float, floor: float, regime: str
 
 def exact_interval(value: float) -> Interval:
     """Return the interval of a closure: the floor is exact, and only ticks without information widen it."""
-    return Interval(value=value, low=value - EXACT_UNTOLD, high=min(1.0, value + EXACT_UNTOLD))
+    return Interval(value=value, low=value - EXACT_UNTIMED, high=min(1.0, value + EXACT_UNTIMED))
 
 
 def computed_cause(parameter: str, value: Parameter, actuator: str, closure: float) -> Cause:

@@ -85,7 +85,7 @@ def with_lateness(run: RunSignals, robot: Robot) -> RunSignals:
     error = controller_error(run, robot)
     if error is not None:
         odd = np.abs(error / top).max(axis=1) > EXACT
-        stale = _told(odd, _explained(run, robot, top)) if 0.0 < odd.mean() <= LATE_SHARE else None
+        stale = _late(odd, _explained(run, robot, top)) if 0.0 < odd.mean() <= LATE_SHARE else None
     echo = transport_error(run)
     if echo is not None:
         assert run.command is not None and run.echo is not None
@@ -93,8 +93,8 @@ def with_lateness(run: RunSignals, robot: Robot) -> RunSignals:
         near = _around(run, stale)
         earlier = [np.abs((run.echo - delayed(run.command, n)) / top).max(axis=1) < ROUNDING for n in (2, 3)]
         rest = odd & ~near
-        told = _told(rest, np.logical_or(*earlier)) if rest.mean() <= SPORADIC else np.zeros_like(odd)
-        held = (odd & near) | told
+        late = _late(rest, np.logical_or(*earlier)) if rest.mean() <= SPORADIC else np.zeros_like(odd)
+        held = (odd & near) | late
         held = held if held.any() else None
     return replace(run, stale=stale, held=held)
 
@@ -108,7 +108,7 @@ def _around(run: RunSignals, stale: NDArray[np.bool_] | None) -> NDArray[np.bool
     return np.convolve(late, np.ones(2 * AROUND + 1), "same") > 0.5
 
 
-def _told(odd: NDArray[np.bool_], explained: NDArray[np.bool_]) -> NDArray[np.bool_]:
+def _late(odd: NDArray[np.bool_], explained: NDArray[np.bool_]) -> NDArray[np.bool_]:
     """Odd ticks that lateness explains; all of them when it explains nearly all."""
     return odd if (odd & explained).sum() > MOSTLY * odd.sum() else odd & explained
 

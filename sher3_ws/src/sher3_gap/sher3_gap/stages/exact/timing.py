@@ -113,8 +113,8 @@ def tick_latency(command: Array, echo: Array, around: Array) -> tuple[Array, Arr
         square = np.sum(trial**2, axis=1)
         tells = energy > TELLING_STEP**2
         better = square <= left if whole == base else tells & (square < 0.01 * left) & (left > UNEXPLAINED)
-        told = better & tells & ~usual
-        ticks[told] = (whole + part)[told]
+        timed = better & tells & ~usual
+        ticks[timed] = (whole + part)[timed]
         left[better], error[better] = square[better], trial[better]
     return ticks, error
 
@@ -203,7 +203,7 @@ def demand_in_force(run: RunSignals, robot: Robot, timing: Timing | None) -> Dem
     newest = np.column_stack([delayed(run.command[:, [i]], 1 + n)[:, 0] for i, n in enumerate(whole)])
     older = np.column_stack([delayed(run.command[:, [i]], 2 + n)[:, 0] for i, n in enumerate(whole)])
     step = newest - older
-    told = np.abs(step) > TELLING_STEP * np.array([a.limits.velocity for a in robot.actuators])
-    part = np.where(told, (newest - run.echo) / np.where(told, step, 1.0), timing.latency - whole)
+    steps = np.abs(step) > TELLING_STEP * np.array([a.limits.velocity for a in robot.actuators])
+    part = np.where(steps, (newest - run.echo) / np.where(steps, step, 1.0), timing.latency - whole)
     between = np.abs(run.echo - newest) <= np.abs(step) * (1.0 - 1e-6) + 1e-12
     return Demand(np.where(between, newest, run.echo), np.clip(part, 0.0, 1.0))

@@ -45,12 +45,12 @@ def even_stamps(stamps: Array, run: str) -> tuple[Array, NDArray[np.int64], str]
         kept = kept[np.argsort(stamps[kept], kind="stable")]
         notes.append(f"{int((steps < 0.0).sum())} samples came in a wrong order; sorted by their stamps")
         steps = np.diff(stamps[kept])
-    found, told = stamps[kept], float(np.mean(steps == 0.0))
-    if 0.0 < told < ROUNDED:
+    found, repeated = stamps[kept], float(np.mean(steps == 0.0))
+    if 0.0 < repeated < ROUNDED:
         first = np.concatenate([[True], steps != 0.0])
         found, kept = found[first], kept[first]
         notes.append(f"{int((~first).sum())} stamps are there twice; the first one is taken")
-    elif told >= ROUNDED and (steps >= 0.0).all():
+    elif repeated >= ROUNDED and (steps >= 0.0).all():
         tick, line = float(steps[steps > 0.0].min()), _line(found)
         ticks = np.flatnonzero(np.concatenate([[True], steps > 0.0]))
         off = float(np.abs(line - found).max())
@@ -62,7 +62,7 @@ def even_stamps(stamps: Array, run: str) -> tuple[Array, NDArray[np.int64], str]
             notes.append(f"several rows have one stamp: of each of its {len(ticks)} ticks the first row is taken")
         else:
             raise MachineError(
-                f"{run}: {told:.0%} of the stamps repeat the one before",
+                f"{run}: {repeated:.0%} of the stamps repeat the one before",
                 value=f"{off:.3g} s off an even clock",
                 limit=f"{2.0 * tick:.3g} s",
                 remedy="record finer stamps, or state the rate of the samples: `time: {rate: HZ}`",

@@ -23,8 +23,8 @@ def is_long(rows: Sequence[Sequence[str]]) -> bool:
     if len(rows) < FEWEST:
         return False
     read = [_reading(row) for row in (rows[0], rows[len(rows) // 2], rows[-1])]
-    told = [_reading(row) for row in rows] if all(read[1:]) else []
-    known = [reading for reading in told if reading]
+    readings = [_reading(row) for row in rows] if all(read[1:]) else []
+    known = [reading for reading in readings if reading]
     return len(known) > 0.9 * len(rows) and len({name for name, _, _ in known}) <= MOST_CHANNELS
 
 

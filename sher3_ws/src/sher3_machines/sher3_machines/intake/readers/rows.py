@@ -46,10 +46,10 @@ def columns_of(rows: Rows, comma: bool, names: Sequence[str] = ()) -> dict[str, 
 def _second_header(rows: Rows, comma: bool) -> int | None:
     """Return the row that is the header of a further table: words, in the columns of the numbers below it."""
     usual = rows[usual_row(len(rows))]
-    told = next((i for i, cell in enumerate(usual) if _is_number(cell, comma)), None)
-    if told is None or any(_is_number(cell, comma) for cell in rows[0]):
+    first = next((i for i, cell in enumerate(usual) if _is_number(cell, comma)), None)
+    if first is None or any(_is_number(cell, comma) for cell in rows[0]):
         return None
-    words = (i for i, row in enumerate(rows[:-1]) if i > 1 and told < len(row) and not _is_number(row[told], comma))
+    words = (i for i, row in enumerate(rows[:-1]) if i > 1 and first < len(row) and not _is_number(row[first], comma))
     return next((i for i in words if _is_header(rows[i], rows[i + 1], comma)), None)
 
 
@@ -123,14 +123,14 @@ def names_of(preamble: Rows) -> list[str]:
         return []
     above, last = preamble[-2:] if len(preamble) > 1 else ([], preamble[-1])
     units = [spelled(cell.strip().strip("[]()")) for cell in last]
-    told = len(above) == len(last) and 2 * sum(unit in UNITS for unit in units) > len(last)
-    return _with_units(above, last) if told else list(last)
+    has_units = len(above) == len(last) and 2 * sum(unit in UNITS for unit in units) > len(last)
+    return _with_units(above, last) if has_units else list(last)
 
 
 def _in_table(row: Sequence[str], numeric: Sequence[int], width: int, comma: bool) -> bool:
     """Return whether a row holds numbers where a usual one does, in more than half of those columns."""
-    told = sum(i < len(row) and _is_number(row[i], comma) for i in numeric)
-    return len(row) <= width and told > FILLED * len(numeric)
+    filled = sum(i < len(row) and _is_number(row[i], comma) for i in numeric)
+    return len(row) <= width and filled > FILLED * len(numeric)
 
 
 def _is_number(cell: str, comma: bool) -> bool:

@@ -123,8 +123,8 @@ def numeric(data: Mapping[str, object]) -> dict[str, Array]:
 
 def _numbers(x: Array) -> Array:
     """Return a column of text as numbers, nan for other words, where most of its first cells are numbers or nothing."""
-    told = [value_of("" if cell is None else str(cell), False) for cell in x[:SHOWN]]
-    if 2 * sum(isinstance(cell, float) for cell in told) <= len(told):
+    values = [value_of("" if cell is None else str(cell), False) for cell in x[:SHOWN]]
+    if 2 * sum(isinstance(cell, float) for cell in values) <= len(values):
         return x
-    told += [value_of("" if cell is None else str(cell), False) for cell in x[SHOWN:]]
-    return np.array([cell if isinstance(cell, float) else np.nan for cell in told])
+    values += [value_of("" if cell is None else str(cell), False) for cell in x[SHOWN:]]
+    return np.array([cell if isinstance(cell, float) else np.nan for cell in values])

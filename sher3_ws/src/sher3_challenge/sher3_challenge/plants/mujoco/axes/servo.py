@@ -54,7 +54,7 @@ class Servos:
         force = self.kp * (demand - speed)
         force[:, self.own] += self.ki[self.own] * (state[:, self.state] - position[:, self.own])
         for j, drive in self.special.items():
-            force[:, j] = drive.told
+            force[:, j] = drive.reports
         return force
 
     def now(self, position: Array, speed: Array) -> Array:
@@ -62,7 +62,7 @@ class Servos:
         force = self.kp * (self.demand - speed)
         force[self.own] += self.ki[self.own] * (self.data.act[self.state] - position[self.own])
         for j, drive in self.special.items():
-            force[j] = drive.told[-1]
+            force[j] = drive.reports[-1]
         return np.asarray(force)
 
     def tell(self) -> None:
@@ -114,11 +114,11 @@ class LawDrive:
         self.xi = held / axis.ki
         self.first = self.second = held
         self.heat = 0.0
-        self.told: list[float] = []
+        self.reports: list[float] = []
 
     def tell(self, demand: float, v: float) -> None:
         """Note the force the drive makes now."""
-        self.told.append(self._now(demand, v))
+        self.reports.append(self._now(demand, v))
 
     def _now(self, demand: float, v: float) -> float:
         return self.second if self.law.lag > 0.0 else self._clamped(self._raw(demand, v))

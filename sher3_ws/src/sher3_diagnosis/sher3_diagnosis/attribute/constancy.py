@@ -19,7 +19,7 @@ from sher3_diagnosis.thresholds import CERTAIN, CONSTANT
 
 
 @dataclass(frozen=True)
-class Steadiness:
+class Constancy:
     """What each run determines of the coefficients of one cause, the other causes as fitted.
 
     Attributes:
@@ -64,7 +64,7 @@ class Steadiness:
         return self.right.shape[1] > 0 and len(set(self.excitation)) > 1
 
 
-def steadiness_of(evidence: Evidence, fit: Fit, index: int) -> Steadiness:
+def constancy_of(evidence: Evidence, fit: Fit, index: int) -> Constancy:
     """Return what every run determines of one cause of a fit."""
     data, term = evidence.data, fit.terms[index]
     normal = np.zeros((len(data.target), term.width, term.width))
@@ -77,4 +77,4 @@ def steadiness_of(evidence: Evidence, fit: Fit, index: int) -> Steadiness:
             wide = term.wide(r, channel, len(left))
             normal[r] += wide.T @ wide
             right[r] += wide.T @ left
-    return Steadiness(tuple(evidence.excitations), normal, right)
+    return Constancy(tuple(evidence.excitations), normal, right)

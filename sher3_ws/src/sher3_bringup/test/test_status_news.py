@@ -4,7 +4,7 @@ import io
 
 import pytest
 from sher3_bringup.terminal.screen import Screen
-from sher3_bringup.terminal.told import Told
+from sher3_bringup.terminal.status_news import StatusNews
 from sher3_common.reasons import Reason
 from sher3_common.remedies import REMEDY, remedy
 
@@ -20,75 +20,75 @@ class Terminal(io.StringIO):
 
 
 def test_a_change_of_state_is_one_line_with_reason_and_remedy_and_is_said_once():
-    told = Told()
-    assert told.hear("supervisor/status", ENABLED) == ["ENABLED  by enable"]
-    assert told.hear("supervisor/status", ENABLED) == []
-    (line,) = told.hear("supervisor/status", FAULT)
+    news = StatusNews()
+    assert news.hear("supervisor/status", ENABLED) == ["ENABLED  by enable"]
+    assert news.hear("supervisor/status", ENABLED) == []
+    (line,) = news.hear("supervisor/status", FAULT)
     assert line == (
         "FAULT  EMERGENCY_STOP pedal/measured: 1 1, limit 0 1; the emergency stop is pressed; "
         "release the emergency stop, then send disable, and enable"
     )
-    assert told.fault == line
-    assert told.hear("supervisor/status", {**FAULT, "later_faults": 1}) == []
+    assert news.fault == line
+    assert news.hear("supervisor/status", {**FAULT, "later_faults": 1}) == []
 
 
 def test_a_recovered_fault_is_none_at_the_end_and_a_second_one_is_said_again():
-    told = Told()
+    news = StatusNews()
     for status in (FAULT, DISABLED):
-        told.hear("supervisor/status", status)
-    assert told.fault == ""
-    assert len(told.hear("supervisor/status", {**FAULT, "since": 9})) == 1 and told.fault
+        news.hear("supervisor/status", status)
+    assert news.fault == ""
+    assert len(news.hear("supervisor/status", {**FAULT, "since": 9})) == 1 and news.fault
 
 
 def test_a_pause_says_how_it_ends():
     overrun = {"code": "OVERRUN", "value": 0.3, "limit": 0.1, "unit": "of the cycles", "source": "sher3/admittance"}
-    (line,) = Told().hear("supervisor/status", {**FAULT, "state": "PAUSED", "first_fault": overrun})
+    (line,) = StatusNews().hear("supervisor/status", {**FAULT, "state": "PAUSED", "first_fault": overrun})
     assert line.startswith("PAUSED  OVERRUN") and line.endswith("then send resume")
 
 
 def test_a_refusal_is_said_once_and_again_after_it_was_settled():
-    told, refused = Told(), {"mode": None, "refused": {"text": "move_jp rejected: joint names differ"}}
-    told.hear("motion/status", {"mode": None, "refused": None})
-    assert told.hear("motion/status", refused) == ["refused  move_jp rejected: joint names differ"]
-    assert told.hear("motion/status", refused) == []
-    assert told.hear("motion/status", {"mode": None, "refused": None}) == []
-    assert len(told.hear("motion/status", refused)) == 1
+    news, refused = StatusNews(), {"mode": None, "refused": {"text": "move_jp rejected: joint names differ"}}
+    news.hear("motion/status", {"mode": None, "refused": None})
+    assert news.hear("motion/status", refused) == ["refused  move_jp rejected: joint names differ"]
+    assert news.hear("motion/status", refused) == []
+    assert news.hear("motion/status", {"mode": None, "refused": None}) == []
+    assert len(news.hear("motion/status", refused)) == 1
 
 
 def test_what_was_refused_before_is_not_said():
-    told = Told()
-    assert told.hear("motion/status", {"mode": None, "refused": {"text": "of another client"}}) == []
-    assert told.hear("motion/status", {"mode": None, "refused": {"text": "mine"}}) == ["refused  mine"]
+    news = StatusNews()
+    assert news.hear("motion/status", {"mode": None, "refused": {"text": "of another client"}}) == []
+    assert news.hear("motion/status", {"mode": None, "refused": {"text": "mine"}}) == ["refused  mine"]
 
 
 def test_an_enabled_robot_that_does_not_follow_says_why_once():
-    told, frozen = Told(), {"reason": "WRENCH_FROZEN", "text": "the wrench repeats bit for bit", "since": 5}
-    assert told.hear("admittance/status", frozen) == told.hear("admittance/status", frozen) == []
-    told.hear("supervisor/status", ENABLED)
-    (line,) = told.hear("admittance/status", frozen)
+    news, frozen = StatusNews(), {"reason": "WRENCH_FROZEN", "text": "the wrench repeats bit for bit", "since": 5}
+    assert news.hear("admittance/status", frozen) == news.hear("admittance/status", frozen) == []
+    news.hear("supervisor/status", ENABLED)
+    (line,) = news.hear("admittance/status", frozen)
     assert line.startswith("at rest  WRENCH_FROZEN: the wrench repeats bit for bit; ") and "add noise" in line
     for status in (frozen, {**frozen, "since": 6}, {**frozen, "since": 6}):
-        assert told.hear("admittance/status", status) == []
+        assert news.hear("admittance/status", status) == []
 
 
 def test_what_lasts_no_second_and_a_released_pedal_are_no_reasons_to_say_so():
-    told = Told()
-    told.hear("supervisor/status", ENABLED)
+    news = StatusNews()
+    news.hear("supervisor/status", ENABLED)
     for status in (("WRENCH_FROZEN", 5), ("MOVING", 6), ("WRENCH_FROZEN", 7), *[("PEDAL_RELEASED", 8)] * 3):
-        assert told.hear("admittance/status", dict(zip(("reason", "since"), status, strict=True))) == []
+        assert news.hear("admittance/status", dict(zip(("reason", "since"), status, strict=True))) == []
 
 
 def test_the_status_line_has_state_mode_force_speed_and_lost_cycles():
-    told = Told()
-    told.hear("supervisor/status", ENABLED)
-    told.hear("admittance/status", {"text": "the pedal is released"})
-    assert told.status() == "ENABLED   the pedal is released   lost cycles 0"
-    told.hear("motion/status", {"mode": "cooperative"})
-    told.hear("diagnostics", {"name": "admittance: inputs", "values": (("force [N]", "0.934"),)})
-    told.hear("diagnostics", {"name": "kinematics: inputs", "values": (("TIP_SPEED tip [m/s]", "0.00083 limit 1"),)})
+    news = StatusNews()
+    news.hear("supervisor/status", ENABLED)
+    news.hear("admittance/status", {"text": "the pedal is released"})
+    assert news.status() == "ENABLED   the pedal is released   lost cycles 0"
+    news.hear("motion/status", {"mode": "cooperative"})
+    news.hear("diagnostics", {"name": "admittance: inputs", "values": (("force [N]", "0.934"),)})
+    news.hear("diagnostics", {"name": "kinematics: inputs", "values": (("TIP_SPEED tip [m/s]", "0.00083 limit 1"),)})
     for node, lost in (("sher3/admittance", "2"), ("sher3/pedal", "1"), ("sher3/pedal", "3")):
-        told.hear("diagnostics", {"name": node, "values": (("lost_cycles", lost),)})
-    assert told.status() == "ENABLED   cooperative   force 0.93 N   tip 0.83 mm/s   lost cycles 5"
+        news.hear("diagnostics", {"name": node, "values": (("lost_cycles", lost),)})
+    assert news.status() == "ENABLED   cooperative   force 0.93 N   tip 0.83 mm/s   lost cycles 5"
 
 
 def test_every_reason_has_a_remedy_and_a_second_publisher_is_told_what_to_start():

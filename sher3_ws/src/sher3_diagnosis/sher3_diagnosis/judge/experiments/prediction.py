@@ -15,7 +15,7 @@ import numpy as np
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.finding import Judged
 from sher3_diagnosis.fit.fitting import Fit, Term
-from sher3_diagnosis.fit.whitened import Whitened
+from sher3_diagnosis.fit.standardised import Standardised
 from sher3_diagnosis.judge.calibration.calibration import in_force
 from sher3_diagnosis.judge.evidence.bent import added, stray_share
 from sher3_diagnosis.judge.level import LEVELS
@@ -27,7 +27,7 @@ OF_TODAY = ("law", "place", "anything")
 """Evidence that further runs would change in a way that a drawn bend does not tell."""
 
 
-def foretold(found: Fit, terms: Sequence[Term], more: Whitened, level: float) -> list[dict[Channel, Array]]:
+def predicted(found: Fit, terms: Sequence[Term], more: Standardised, level: float) -> list[dict[Channel, Array]]:
     """Return what the terms of a fit add to further runs, per run and channel (N,), over the floor.
 
     The law of the last of them is bent by a share `level` of its power.
@@ -42,7 +42,7 @@ def foretold(found: Fit, terms: Sequence[Term], more: Whitened, level: float) ->
     return out
 
 
-def _bends(more: Whitened, channel: Channel, level: float) -> dict[int, Array]:
+def _bends(more: Standardised, channel: Channel, level: float) -> dict[int, Array]:
     """Return the factors on a law per run, (N,): one sine of the place's inputs in all runs for each component."""
     inputs = [view.inputs(channel.actuator) for view in more.views]
     together = np.concatenate(inputs)
@@ -58,7 +58,7 @@ def _bends(more: Whitened, channel: Channel, level: float) -> dict[int, Array]:
     }
 
 
-def with_bend(j: Judged, before: Fit, after: Fit, data: Whitened, worth: float) -> float:
+def with_bend(j: Judged, before: Fit, after: Fit, data: Standardised, worth: float) -> float:
     """Return the probability of the library after further runs, on which the law of a cause is bent.
 
     Args:

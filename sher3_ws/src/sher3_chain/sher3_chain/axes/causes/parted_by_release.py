@@ -19,7 +19,7 @@ NEARER = 0.25
 """Share of the mean square error of the position below which a rival takes a cause's place: half of it in rms."""
 
 
-def told_by_release(evidence: Any, found: Attribution) -> Attribution:
+def parted_by_release(evidence: Any, found: Attribution) -> Attribution:
     """Return the causes of a free axis with those rivals in their place whose motion comes markedly nearer."""
     if not evidence.axis.free or evidence.mass <= 0.0 or not any(found.rivals):
         return found
@@ -40,11 +40,16 @@ def _error(evidence: Any, found: Attribution, fit: Fit) -> float:
         if term.effect.id not in simulated():
             return float("inf")
         values = term.effect.parameters(term.shape, fit.of(i))
-        told = {name: Parameter(value=value, unit="1") for name, value in values.items()}
+        parameters = {name: Parameter(value=value, unit="1") for name, value in values.items()}
         page, none = term.effect, Interval(value=0.0)
         causes.append(
             Cause(
-                effect=page.id, family=page.family, stage=page.stage, actuator=term.site, parameters=told, closure=none
+                effect=page.id,
+                family=page.family,
+                stage=page.stage,
+                actuator=term.site,
+                parameters=parameters,
+                closure=none,
             )
         )
     nearer, refined = refine_free(evidence, causes)

@@ -21,7 +21,7 @@ NEXT = {OperatingState.FAULT: RECOVER, OperatingState.PAUSED: "then send resume"
 """How a state that the robot went to by itself is left when the cause is gone."""
 
 
-class Told:
+class StatusNews:
     """What was heard of the robot, and what is new in it.
 
     Attributes:

@@ -9,7 +9,7 @@ from typing import Any
 from sher3_diagnosis.channel import Array, Channel, Floors, Residuals
 
 
-class Whitened:
+class Standardised:
     """Residuals of all runs over their floor, ready for least squares.
 
     Attributes:
@@ -30,9 +30,9 @@ class Whitened:
             {c: self.flat(r, c, x.values) for c, x in res.items() if x.ok.any()} for r, res in enumerate(self.residuals)
         ]
 
-    def with_runs(self, more: Whitened, target: Sequence[dict[Channel, Array]]) -> Whitened:
+    def with_runs(self, more: Standardised, target: Sequence[dict[Channel, Array]]) -> Standardised:
         """Return these runs and others, of which something else than their residuals is looked at, (N,) over floors."""
-        out = Whitened([*self.views, *more.views], [*self.residuals, *more.residuals], [*self.floors, *more.floors])
+        out = Standardised([*self.views, *more.views], [*self.residuals, *more.residuals], [*self.floors, *more.floors])
         out.target[len(self.target) :] = target
         return out
 
@@ -51,5 +51,5 @@ class Whitened:
 
     @cached_property
     def samples(self) -> dict[tuple[int, Channel], int]:
-        """Number of whitened samples of every run and channel."""
+        """Number of standardised samples of every run and channel."""
         return {(r, c): len(y) for r, t in enumerate(self.target) for c, y in t.items()}
