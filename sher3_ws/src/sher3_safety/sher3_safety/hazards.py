@@ -56,7 +56,8 @@ HAZARDS = (
         ("pedal", "pedal.*"),
         (f"{_DRIVERS}/test_plausible_pedal.py",),
         ("pedal released", "pedal silent or dead"),
-        "a lever that hangs: the hand alone decides, a press ends after 120 s",
+        "a lever that hangs: the hand alone decides, a press ends after 120 s; one that bounces as a foot may, 3 to 6 "
+        "times a second, is believed: a hand of 1 N that stays leads the tip on by up to 0.8 mm in 3 s",
     ),
     Hazard(
         "moves without a hand, or against it",
@@ -75,7 +76,8 @@ HAZARDS = (
         "along the hand, by 5 % 0.26 mm, told by its size; a sensor turned by 10 degrees as a hand comes "
         "at once: 67 um sideways on 1.5 mm (`python bench/slow_forces.py`); without a hand "
         "0.2 to 0.9 N are noticed so late that the travel near tissue is beyond the budget of 25 um, since a leg's "
-        "force has a noise of 0.17 N and a light hand takes time",
+        "force has a noise of 0.17 N and a light hand takes time: 102 um where 0.4 N leave just after enabling "
+        "(`python bench/just_enabled.py`)",
     ),
     Hazard(
         "an axis moves by itself",
