@@ -21,6 +21,7 @@ from attacks import FREE, NEAR, ROBOT
 from shared_attacks import stays
 from sher3_common.operating_state import StateCommand
 from sher3_control.motion.speed_cap import Regime
+from sher3_control.supervision.hand import HandDetector
 from sher3_runtime import Graph
 from sher3_safety.runs.stepped import SETTLE, MatrixRun
 from sher3_safety.search.forked import forked
@@ -69,9 +70,14 @@ def left(run: MatrixRun, leaves: int, force: float) -> float:
     return farthest(run)
 
 
+def hand_watch(run: MatrixRun) -> HandDetector:
+    """Return the watch of the hand of a robot."""
+    return next(d for d in run.rig.supervisor.supervisor.detectors if isinstance(d, HandDetector))
+
+
 def grip(run: MatrixRun, seed: int) -> tuple[float, str]:
     """Return the largest share of a limit of force that a healthy hand comes to, and the state at the end."""
-    draw, operator, watch, worst = Random(seed), run.operator, run.rig.supervisor._hand, 0.0
+    draw, operator, watch, worst = Random(seed), run.operator, hand_watch(run), 0.0
     force, along = draw.choice((-1, 1)) * 10.0 ** draw.uniform(-1.3, 0.8), draw.random() < 0.6
     at, rise, pedal, lasts = (
         draw.uniform(0, 180),
