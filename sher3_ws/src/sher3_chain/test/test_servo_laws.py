@@ -12,16 +12,17 @@ from sher3_diagnosis.verdict import Parameter
 SEED, SECONDS, PLACE = 41, 8.0, 1
 
 
-def logged(share: float = 1.0, late: int = 0, rubs: float = 0.0, forces: bool = True) -> gap.Answer:
+def logged(share: float = 1.0, late: int = 0, rubs: float = 0.0, forces: bool = True, stiff: float = 1.0) -> gap.Answer:
     """Diagnose a log of an arm of which one servo gives a share of its force, or follows its control steps late.
 
-    Its joint rubs by more than its model says, N m and N m/(rad/s); the log has forces, or has not.
+    Its joint rubs by more than its model says, N m and N m/(rad/s); the log has forces, or has not. `stiff` is a factor
+    of the gain of its position alone.
     """
     xml = drawn_xml(np.random.default_rng(SEED), servo=True, joints=3)
     nominal = mujoco.MjModel.from_xml_string(xml)
     spec = mujoco.MjSpec.from_string(xml)
-    spec.actuators[PLACE].gainprm[0] *= share
-    spec.actuators[PLACE].biasprm[1:3] *= share
+    spec.actuators[PLACE].gainprm[0] *= share * stiff
+    spec.actuators[PLACE].biasprm[1:3] *= share * np.array([stiff, 1.0])
     spec.joints[PLACE].frictionloss += rubs
     spec.joints[PLACE].damping[0] += rubs
     model, rng = spec.compile(), np.random.default_rng(SEED)
@@ -44,6 +45,15 @@ def test_a_weak_servo_is_a_gain_of_its_law():
     [cause] = answer.causes
     assert (answer.status, cause.effect, cause.actuator) == ("attributed", "controller_gain", "shoulder")
     assert cause.parameters["relative"].value == pytest.approx(-0.1, abs=0.002)
+
+
+@pytest.mark.parametrize("stiff", [0.6, 1.33, 2.0])
+def test_one_wrong_gain_of_a_servo_is_that_gain(stiff):
+    answer = logged(stiff=stiff)
+    [cause] = answer.causes
+    assert (answer.status, cause.effect, cause.actuator) == ("attributed", "controller_gain", "shoulder")
+    assert cause.parameters["position_relative"].value == pytest.approx(stiff - 1.0, abs=0.01)
+    assert not any("opposite sign" in note for note in answer.notes)
 
 
 def test_a_control_that_acts_late_is_a_delay_of_its_reference():

@@ -65,8 +65,8 @@ def _cut_at_holes(name: str, tables: Tables, machine: ChainDescription) -> tuple
 def _placed(name: str, tables: Tables, machine: ChainDescription, rows: int) -> Mask:
     """Return the rows (n,) in which any joint has a place; of many rows without one a record has a hole there."""
     found = [tables[find(axis.signals.position.column, tables, name)] for axis in machine.chain]
-    told = [np.isfinite(x).reshape(rows, -1).any(axis=1) for x in found if len(x) == rows]
-    return np.any(told, axis=0) if told else np.ones(rows, dtype=bool)
+    placed = [np.isfinite(x).any(axis=tuple(range(1, x.ndim))) for x in found if len(x) == rows]
+    return np.any(placed, axis=0) if placed else np.ones(rows, dtype=bool)
 
 
 def _rows(tables: Tables) -> int:

@@ -33,7 +33,7 @@ SHIFTS = (0, 1, 2, 3, 4, 6, 8, 12, 16, 24)
 def best_sampling(signals: Sequence[AxisSignals], axis: Axis) -> Sampling:
     """Return the sampling whose law leaves least of the command's steps; of equal ones, least of the command itself.
 
-    A plain sampling comes first where the stated law, with a reference that may be late, leaves hardly anything. The
+    A plain sampling comes first where the stated law, its reference late or a gain wrong, leaves hardly anything. The
     steps would mislead there: a controller that knows its speed from elsewhere shows no encoder counts in them, and a
     log that is slower than its controller shows counts that the controller did not read.
 
@@ -63,7 +63,7 @@ def best_sampling(signals: Sequence[AxisSignals], axis: Axis) -> Sampling:
     tried = [Sampling(pace, 0) for pace in (LAST, TWO, CENTRAL, *FASTER)]
     found = {sampling: excess(signals, axis, sampling) for sampling in tried}
     plainest = _least_of(found)
-    if found[plainest].late <= NOTHING_LEFT:
+    if min(found[plainest].late, found[plainest].gained) <= NOTHING_LEFT:
         return plainest
     plain = least([Sampling(pace, shift) for pace in (LAST, TWO, CENTRAL) for shift in SHIFTS])
     best = least([Sampling(pace, shift) for pace in (Pace(1.0, lag) for lag in LAGS) for shift in SHIFTS])
@@ -82,12 +82,12 @@ def best_sampling(signals: Sequence[AxisSignals], axis: Axis) -> Sampling:
 def _least_of(found: Mapping[Sampling, Excess]) -> Sampling:
     """Return the sampling that leaves least of a law with free gains, since nothing else changes what that leaves.
 
-    Of equals the one under which the stated law reaches its floor best, or else a late law. Above the floor these say
-    how far the law is off, and nothing of the sampling.
+    Of equals the one under which the stated law reaches its floor best, or else a late law, or one with one gain wrong.
+    Above the floor these say how far the law is off, and nothing of the sampling.
     """
     least = min(x.freed for x in found.values())
     equal = [sampling for sampling, x in found.items() if x.freed <= ALIKE * least]
-    for law in (lambda x: x.stated, lambda x: x.late):
+    for law in (lambda x: x.stated, lambda x: x.late, lambda x: x.gained):
         best = min(equal, key=lambda sampling: law(found[sampling]))
         if law(found[best]) <= 1.0:
             return best
@@ -105,12 +105,14 @@ class Excess(NamedTuple):
     Attributes:
         stated: of the law as it is stated.
         late: of the law as it is stated for a reference that may be late.
+        gained: of the law with one gain of its own, for all of it or for one part.
         freed: of the law with free gains of its parts as well: neither gains nor a late reference are matters of the
             sampling.
     """
 
     stated: float
     late: float
+    gained: float
     freed: float
 
 
@@ -122,24 +124,30 @@ def excess(signals: Sequence[AxisSignals], axis: Axis, sampling: Sampling) -> Ex
         left = residual_of(view)
         if left.ok.any():
             late, y = _lateness(run), left.values[left.ok, 0]
-            free = (run.to_grid(x)[left.ok] for x in (late, np.column_stack([view.stated.parts, late])))
-            rest = [y, *(y - x @ np.linalg.lstsq(x, y, rcond=None)[0] for x in free)]
-            powers.append(np.mean((np.array(rest) / floor_of(view, left)) ** 2, axis=1))
-    return Excess(*np.mean(powers, axis=0).tolist()) if powers else Excess(0.0, 0.0, 0.0)
+            parts = view.stated.parts
+            free = [late, np.column_stack([parts, late]), parts.sum(axis=1)[:, None], *(x[:, None] for x in parts.T)]
+            rest = [y, *(y - x @ np.linalg.lstsq(x, y, rcond=None)[0] for x in (run.to_grid(x)[left.ok] for x in free))]
+            stated, with_late, freed, *one = np.mean((np.array(rest) / floor_of(view, left)) ** 2, axis=1)
+            powers.append((stated, with_late, min(one), freed))
+    return Excess(*np.mean(powers, axis=0).tolist()) if powers else Excess(0.0, 0.0, 0.0, 0.0)
 
 
 def backwards(signals: Sequence[AxisSignals], axis: Axis, sampling: Sampling) -> bool:
     """Return whether the commands go against their law over the whole records, an integral beside it left free.
 
     A sign is a matter of the fit: at the rate of the samples the counts of an encoder, which come back at the next
-    sample, outweigh what a law answers to them a period late.
+    sample, outweigh what a law answers to them a period late. The law and its parts, each with a gain of its own, must
+    both be turned: where the parts nearly cancel, one wrong gain turns their sum about; where a command is cut off, a
+    part.
     """
     shares = []
     for run in signals:
         if run.command is not None:
-            law = stated_law(run, axis, sampling)
-            shares.append(_solved(np.column_stack([law.command, *_slow(law.error)]), run.command[:, 0])[0])
-    return sum(shares) < 0.0
+            law, command = stated_law(run, axis, sampling), run.command[:, 0]
+            whole, slow = law.command, _slow(law.error)
+            each = [_solved(np.column_stack([x, *slow]), command)[:k].sum() for x, k in ((whole, 1), (law.parts, 3))]
+            shares.append(each)
+    return bool(shares) and bool(np.all(np.sum(shares, axis=0) < 0.0))
 
 
 def _slow(error: Array) -> tuple[Array, Array]:
