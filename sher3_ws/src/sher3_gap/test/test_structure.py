@@ -24,6 +24,13 @@ def test_every_effect_is_somewhere():
     assert not found.invisible
 
 
+def test_a_page_that_is_named_later_is_part_of_it(monkeypatch):
+    assert "own" not in set().union(*structure(FULL).groups)
+    own = {**library(), "own": library()["backlash"]}
+    monkeypatch.setattr("sher3_gap.stages.isolability.library", lambda: own)
+    assert "own" in group(FULL, "backlash")
+
+
 def test_the_echo_separates_timing_from_the_drive():
     without = tuple(t for t in FULL if t not in ("servo_jv", "drives/setpoint_jv"))
     assert "drive_lag" in group(without, "command_delay")

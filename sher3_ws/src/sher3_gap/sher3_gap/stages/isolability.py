@@ -66,8 +66,8 @@ def _incidence(equations: Iterable[Equation], columns: list[str], field: str) ->
 
 
 @lru_cache(maxsize=64)
-def _analyse(topics: frozenset[str]) -> Isolability:
-    equations = [e for e in _chain() if not e.topic or e.topic in topics]
+def _analyse(equations: tuple[Equation, ...]) -> Isolability:
+    topics = {e.topic for e in equations if e.topic}
     unknowns = sorted({u for e in equations for u in e.unknowns})
     effects = sorted({f for e in equations for f in e.effects})
     x, f = _incidence(equations, unknowns, "unknowns"), _incidence(equations, effects, "effects")
@@ -87,5 +87,5 @@ def structure(topics: Collection[str], known_load: bool = True) -> Isolability:
         topics: names relative to `/sher3`; those that no equation uses are ignored.
         known_load: whether the load on the tip is known, as in scripted runs.
     """
-    used = {e.topic for e in _chain() if e.topic} & set(topics)
-    return _analyse(frozenset(used | ({PAYLOAD} if known_load else set())))
+    known = {*topics, PAYLOAD} if known_load else set(topics)
+    return _analyse(tuple(e for e in _chain() if not e.topic or e.topic in known))
