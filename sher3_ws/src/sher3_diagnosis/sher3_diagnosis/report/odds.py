@@ -11,7 +11,7 @@ SPOKEN = 0.05
 """Probability from which an answer is spoken of."""
 MOST = 3
 """Answers in a headline."""
-SHARES = ("relative", "fraction", "share")
+SHARES = ("relative", "position_relative", "velocity_relative", "integral_relative", "fraction", "share")
 """Parameters without a unit that are shares of what the model has."""
 LACKS = "something {0}that the library lacks"
 
