@@ -111,7 +111,7 @@ class HandDetector(PlainDetector):
 
     def _forget(self) -> None:
         self._felt: Array | None = None
-        self._since, self._astray, self._begun, self._blind = -1, -1, False, 0.0
+        self._since, self._astray, self._begun, self._settled, self._blind = -1, -1, False, False, 0.0
         self._quick, self._slow = np.zeros((len(self._lags) - 1, AXES)), np.zeros(AXES)
         self._sum = np.zeros(AXES)
         self._rough, self._held_more = np.zeros(AXES), np.zeros(2, dtype=bool)
@@ -197,6 +197,8 @@ class HandDetector(PlainDetector):
 
     def _compare(self, step: float, along: Array) -> None:
         """Judge the sum as a change against its mean, that mean, and what changed along the way (2, 5)."""
+        if not self._settled:
+            self._quick, self._settled = np.tile(self._slow, (len(self._quick), 1)), True
         doubt, (strange, hand) = sizes(np.vstack([self._quick - self._slow, self._slow])), sizes(along)
         limits = self._limits + self._settings.hand_share * self._both
         way = self._way_limit + self._settings.hand_share * hand
