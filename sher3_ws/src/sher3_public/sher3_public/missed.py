@@ -24,8 +24,9 @@ def with_missed(verdict: Verdict, clocks: Sequence[Array]) -> Verdict:
     missing = np.concatenate([missing_at(clock) for clock in clocks])
     if not missing.any():
         return verdict
-    page, period = computed(SHARE), float(np.median(np.concatenate([np.diff(clock) for clock in clocks])))
-    uneven = np.concatenate([np.diff(clock) for clock in clocks]) - period * (1 + missing)
+    page, steps = computed(SHARE), np.concatenate([np.diff(clock) for clock in clocks])
+    period = float(np.median(steps))
+    uneven = steps - period * (1 + missing)
     late, floor = (float(np.sqrt(np.mean(x**2))) for x in (period * missing, uneven))
     share = float(missing.sum() / (missing.sum() + len(missing)))
     longest = Parameter(value=period * int(missing.max()), unit="s")

@@ -166,9 +166,9 @@ def levels_of(signals: Sequence[AxisSignals], axis: Axis) -> list[str]:
     return notes
 
 
-def _judged(found: Residuals, not_judged: str) -> Residuals:
+def _judged(found: Residuals, reason: str) -> Residuals:
     """Return the residuals without the force balance where the mass could not be identified."""
-    return {c: x for c, x in found.items() if not not_judged or c.stage != "motor_mechanics"}
+    return {c: x for c, x in found.items() if not reason or c.stage != "motor_mechanics"}
 
 
 def units_of(axis: Axis) -> Mapping[Channel, str]:

@@ -203,7 +203,7 @@ def demand_in_force(run: RunSignals, robot: Robot, timing: Timing | None) -> Dem
     newest = np.column_stack([delayed(run.command[:, [i]], 1 + n)[:, 0] for i, n in enumerate(whole)])
     older = np.column_stack([delayed(run.command[:, [i]], 2 + n)[:, 0] for i, n in enumerate(whole)])
     step = newest - older
-    steps = np.abs(step) > TELLING_STEP * np.array([a.limits.velocity for a in robot.actuators])
-    part = np.where(steps, (newest - run.echo) / np.where(steps, step, 1.0), timing.latency - whole)
+    large = np.abs(step) > TELLING_STEP * np.array([a.limits.velocity for a in robot.actuators])
+    part = np.where(large, (newest - run.echo) / np.where(large, step, 1.0), timing.latency - whole)
     between = np.abs(run.echo - newest) <= np.abs(step) * (1.0 - 1e-6) + 1e-12
     return Demand(np.where(between, newest, run.echo), np.clip(part, 0.0, 1.0))
