@@ -99,8 +99,8 @@ class PlainPlace:
         self.limit = self.plain + settings.position_lag * self.peak + settings.position_force * abs(self.explained)
 
     @property
-    def departs(self):
-        return abs(self.left - self.explained) > self.limit
+    def share(self):
+        return abs(self.left - self.explained) / self.limit
 
     @property
     def moved(self):

@@ -132,10 +132,25 @@ def run(goal, places, stop=None):
 
 
 def test_both_encoders_that_creep_alike_are_found_though_they_agree():
-    """0.5 mm/s on three legs, the echo says zero: beyond 7 um after 16 ms, and all three are suspected."""
+    """0.5 mm/s on three legs, the echo says zero: beyond 7 um / sqrt(3) after 10 ms, and all three are suspected."""
     trip, tick = run(Goal.ENABLED, [(5e-4 * PERIOD * k,) * 3 + (0.0, 0.0) for k in range(100)])
     assert trip.reason is Reason.POSITION_LEFT and trip.axes == (0, 1, 2)
-    assert tick == 8 and trip.value == pytest.approx(8e-6)
+    assert tick == 5 and trip.value == pytest.approx(5e-6)
+
+
+@pytest.mark.parametrize("share, found", [(0.44, False), (0.46, True)])
+def test_axes_are_judged_together_since_the_tip_adds_them_up(share, found):
+    """Five axes off by a share s of their limits are at the limit together when 5 s^2 is 1: s = 0.447."""
+    limits = [SETTINGS.position_angle if scale.revolute else SETTINGS.position_distance for scale in SCALES]
+    trip, _ = run(Goal.ENABLED, [REST, tuple([share * limit for limit in limits])])
+    assert (trip is not None) == found
+    assert trip is None or trip.axes == (0, 1, 2, 3, 4)
+
+
+def test_who_goes_slowly_beside_one_that_leaves_is_suspected_from_half_its_limit_on():
+    """A leg at 20 um of 7; another one at 3 um, which is less than half of its limit, and the tilt at 4 um."""
+    trip, _ = run(Goal.ENABLED, [REST, (20e-6, 3e-6, 0.0, 0.0, 4e-6)])
+    assert trip.axes == (0, 4) and trip.value == pytest.approx(20e-6)
 
 
 def test_a_disabled_robot_that_moves_is_found():
