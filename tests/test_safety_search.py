@@ -48,3 +48,11 @@ def test_a_draw_comes_to_the_same_among_others_and_alone():
     assert first == again and [found.draw for found in others] == draws[1:3]
     assert try_all(draws[:1], load_robot(), 1) == [first]
     assert first.reason == "POSITION_LEFT" and 15e-6 < first.travel < 30e-6
+
+
+def test_the_tip_adds_up_what_four_axes_are_off_and_so_does_the_watch():
+    """Each of them judged alone made 40.6 um near tissue."""
+    legs = "; ".join(f"delta_{n}.power creep speed {v} at 0" for n, v in ((1, -0.002), (2, 0.002), (3, 0.002)))
+    line = f"near_tissue, idle, {legs}; tilt.power creep speed -0.0009 at 0"
+    (found,) = try_all([read(line)], load_robot(), 1)
+    assert found.reason == "POSITION_LEFT" and found.travel < 35e-6

@@ -110,8 +110,9 @@ def _blinded() -> Iterator[Row]:
                   quick=size == 2e-6)  # fmt: skip
     for force, size in ((3.0, 2e-6), (6.0, 5e-6)):
         for name in (AXIS, LEGS):
-            yield Row("force_sensor", "bias", {"force": force}, reasons=DOUBTFUL, states=(NOBODY,), slow=True,
-                      beside=Row(f"{name}.encoders", "jitter", {"size": size}), budget=250e-6, why=FREELY)  # fmt: skip
+            yield Row("force_sensor", "bias", {"force": force}, reasons=(*DOUBTFUL, "POSITION_LEFT"), states=(NOBODY,),
+                      slow=True, beside=Row(f"{name}.encoders", "jitter", {"size": size}), budget=250e-6,
+                      why=FREELY)  # fmt: skip
     yield Row(f"{AXIS}.load_encoder", "jitter", {"size": 2e-6}, reasons=DOUBTFUL, slow=True, duration=0.4,
               states=(FIRM, LIMIT), effect="either", why=SHAKES)  # fmt: skip
 

@@ -55,9 +55,9 @@ def _unheard() -> Iterator[Row]:
 def _behind() -> Iterator[Row]:
     """Yield axes that go by themselves behind encoders that stand, which at rest is what healthy encoders do."""
     for name, encoder, goes, speed in (("axes", "load", "tilt", 5e-4), ("legs", "motor", "legs", 1e-3)):
-        yield Row(f"{name}.{encoder}_encoder", "stuck", reasons=("ENCODER_FROZEN",), budget=NEAR_TRAVEL, after=0.01,
-                  states=(*CALM, PAUSED), beside=Row(f"{goes}.power", "creep", {"speed": speed}),
-                  quick=goes == "tilt", why=WHY)  # fmt: skip
+        yield Row(f"{name}.{encoder}_encoder", "stuck", reasons=("ENCODER_FROZEN", "POSITION_LEFT"),
+                  budget=NEAR_TRAVEL, after=0.01, states=(*CALM, PAUSED), quick=goes == "tilt", why=WHY,
+                  beside=Row(f"{goes}.power", "creep", {"speed": speed}))  # fmt: skip
 
 
 TOGETHER = (*_together(), *_while_braking(), *_unheard(), *_behind())
