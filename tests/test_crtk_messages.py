@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import subprocess
-import time
 from importlib.util import find_spec
 
 import pytest
@@ -49,7 +48,6 @@ def running(domain):
     up = ["up", "--patient", "--layout", "composed", "--duration", "120"]
     for command in (up, ["state", "--crtk", "--for", "120"]):
         processes.append(subprocess.Popen(sher3_command(*command, "--domain", str(domain)), env=child_environment()))
-        time.sleep(2.0)
     try:
         yield domain
     finally:

@@ -47,7 +47,7 @@ def check(result: dict) -> None:
 @pytest.mark.graph
 @pytest.mark.flaky(reruns=2)
 def test_a_short_soak_leaves_nothing_behind():
-    check(run(15.0, 150.0))
+    check(run(6.0, 150.0))
 
 
 @pytest.mark.slow
