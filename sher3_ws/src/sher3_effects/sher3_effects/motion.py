@@ -140,5 +140,5 @@ class GridView:
         return np.hstack([*self.quantities(actuator).values()])
 
     def at_residuals(self, x: Array) -> Array:
-        """Low-pass values of the ticks and sample them on the residual grid."""
+        """Low-pass values (ticks, ...) and sample them on the residual grid, (g, ...)."""
         return self.run.to_grid(x)

@@ -93,7 +93,7 @@ def alive(what: str, reading: Array, remedy: str) -> None:
 
 
 def thinned(name: str, columns: Mapping[str, Array]) -> Readings:
-    """Return the readings of one file, of more than `MOST_ROWS` rows every second, third..., which a note says."""
+    """Return the readings (rows,) of one file; of more than `MOST_ROWS` every second, third..., which a note says."""
     rows = len(next(iter(columns.values())))
     step = -(-rows // MOST_ROWS)
     notes = [f"{name}: every {step}th of {rows} readings is used"] if step > 1 else []

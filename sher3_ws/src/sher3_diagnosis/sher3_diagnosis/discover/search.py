@@ -121,7 +121,7 @@ class Search:
         return float(self.moments(features).losses([], np.arange(len(features))[None])[0])
 
     def left(self, groups: Sequence[Group]) -> list[Array]:
-        """What a formula leaves in every run, standardised."""
+        """What a formula leaves in every run, standardised, (N,) each."""
         features = [f for g in groups for f in g]
         if not features:
             return [self.target(r) for r in self.runs]

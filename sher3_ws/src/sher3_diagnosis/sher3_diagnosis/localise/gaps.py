@@ -55,7 +55,7 @@ def localise(evidence: Evidence, residuals: Mapping[Channel, Mapping[int, Array]
 
     Args:
         evidence: to be judged.
-        residuals: per channel and run, in place of the nominal residual where other terms than causes act on it.
+        residuals: (n, d) per channel and run, in place of the nominal residual where other terms than causes act on it.
     """
     residuals = residuals or {}
     gaps = [g for c in evidence.channels if (g := gap_of(evidence, c, residuals.get(c))) is not None]

@@ -54,7 +54,7 @@ def parts(force: Array, shape: Shape) -> list[Array]:
 
 
 def slopes(shape: Shape, coefficients: Array) -> dict[str, float]:
-    """Return the knee and the stiffness beyond it, by the second compliance; nothing of one slope."""
+    """Return the knee and the stiffness beyond it, by the second of two compliances (2,); nothing of one slope."""
     if "knee" not in shape:
         return {}
     beyond = float(coefficients[1])

@@ -31,6 +31,6 @@ def gentle(coefficients: Array) -> bool:
 
 
 def mean_ratio(coefficients: Array) -> float:
-    """Return the slope of the straight line nearest to a broken line."""
+    """Return the slope of the straight line nearest to a broken line: coefficients (p,) of the columns of `lines`."""
     beside = np.concatenate([[0.0], coefficients[1:], [0.0]]) if len(coefficients) > 1 else np.zeros_like(NODES)
     return float(coefficients[0] + NODES @ beside / (NODES @ NODES))

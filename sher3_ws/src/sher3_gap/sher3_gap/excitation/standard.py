@@ -25,6 +25,7 @@ from sher3_gap.excitation.profile import (
 )
 
 Tracks = tuple[FloatArray, FloatArray]
+"""Set-points (n, actuators) at times (n,) [s]: positions [m, rad], from zero, and velocities [m/s, rad/s]."""
 
 # Fractions of a limit that the set-points use; the rest is left to the position loop.
 _SPEED, _ACCELERATION = 0.75, 0.8

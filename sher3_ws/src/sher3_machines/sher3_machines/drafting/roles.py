@@ -290,6 +290,6 @@ def moves(x: Array) -> bool:
 
 
 def values_of(place: Place, tables: Tables) -> Array:
-    """Return the numbers of a column or of an entry of it, without those that are not finite."""
+    """Return the numbers (n,) of a column or of an entry of it, without those that are not finite."""
     x = tables[place[0]] if place[1] is None else tables[place[0]][:, place[1]]
     return np.asarray(x[np.isfinite(x)])

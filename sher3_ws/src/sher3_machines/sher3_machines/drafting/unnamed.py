@@ -164,7 +164,7 @@ def _is_speed(t: Array, x: Array, v: Array) -> bool:
 
 
 def values_at(place: Place, tables: Tables) -> Array:
-    """Return the numbers of a column or of an entry of it."""
+    """Return the numbers (n,) of a column or of an entry of it."""
     name, index = place
     return tables[name] if index is None else np.asarray(tables[name][:, index])
 

@@ -26,7 +26,7 @@ JOINTS = ("position", "velocity", "effort")
 
 
 def read_bag(path: Path) -> dict[str, Array]:
-    """Return every numeric field of every topic; messages that cannot be decoded end the reading.
+    """Return every numeric field (messages, ...) of every topic; messages that cannot be decoded end the reading.
 
     Raises:
         ValueError: the bag cannot be read.
@@ -84,7 +84,7 @@ def _leaves(name: str, value: Any) -> Iterator[tuple[str, Any]]:
 
 
 def columns(found: dict[str, list[Any]]) -> dict[str, Array]:
-    """Return the columns of a table that every row has, in the same shape."""
+    """Return the columns (rows, ...) of a table that every row has, in the same shape."""
     rows = len(found["received"])
     out = {}
     for name, values in found.items():

@@ -14,7 +14,7 @@ from sher3_machines.intake.readers.rows import columns_of
 
 
 def read_workbook(path: Path) -> dict[str, Array]:
-    """Return the numeric columns of a workbook; of several sheets with numbers as `sheet/column`.
+    """Return the numeric columns (rows,) of a workbook; of several sheets with numbers as `sheet/column`.
 
     Raises:
         MachineError: no reader is installed.

@@ -35,7 +35,7 @@ PICTURE = 3
 
 
 def read_hdf5(path: Path) -> dict[str, Array]:
-    """Return the numeric datasets of a file by their path, fields of compound ones as `dataset/field`.
+    """Return the numeric datasets of a file, as they are, by their path, fields of compound ones as `dataset/field`.
 
     Pictures, text, links and what lies in another file are left out. Structs of MATLAB are `struct/field`.
 

@@ -25,7 +25,7 @@ Rows = Sequence[Sequence[str]]
 
 
 def columns_of(rows: Rows, comma: bool, names: Sequence[str] = ()) -> dict[str, Array]:
-    """Return the numeric columns of rows of cells; without a header columns are c0, c1, ...
+    """Return the numeric columns (rows,) of rows of cells; without a header columns are c0, c1, ...
 
     Args:
         rows: cells as text, titles and header among them.

@@ -25,7 +25,7 @@ SHOWN = 100
 
 
 def read_npz(path: Path) -> dict[str, Array]:
-    """Return the numeric arrays of a file by name."""
+    """Return the numeric arrays of a file, as they are, by name."""
     return numeric(read_arrays(path, max_bytes=MAX_BYTES))
 
 
@@ -38,7 +38,7 @@ def read_npy(path: Path) -> dict[str, Array]:
 
 
 def read_lists(path: Path) -> dict[str, Array]:
-    """Return named lists of a JSON file; objects nest as `name/key`, a list of objects is a table.
+    """Return named lists (n, ...) of a JSON file; objects nest as `name/key`, a list of objects is a table.
 
     A list of objects at the top is a table too, whose columns have the keys' names. The answer of an EPICS archiver is
     a table for each of its channels. Raises ValueError where the top level is neither an object nor a list.
@@ -77,7 +77,7 @@ def _as_rows(column: list[Any]) -> object:
 
 
 def read_lines(path: Path) -> dict[str, Array]:
-    """Return the table of a file with a JSON object in each line; what a line leaves out is nan. Raises ValueError."""
+    """Return the columns (lines, ...) of a file of one object a line; what one leaves out is nan. Raises ValueError."""
     rows = [parse_json(line) for line in decoded(path).splitlines() if line.strip()]
     if not rows or not all(isinstance(row, dict) for row in rows):
         raise ValueError("not every line is an object")

@@ -33,7 +33,7 @@ BLANKS = re.compile(r"\[[^\[\]]*\]|\S+")
 
 
 def read_table(path: Path) -> dict[str, Array]:
-    """Return the numeric columns of a text file; without a header columns are c0, c1, ...
+    """Return the numeric columns (rows,) of a text file; without a header columns are c0, c1, ...
 
     ISO times become seconds since 1970, UTC where no zone is given. Columns of text are left out; empty cells are nan.
     A log with a channel, a stamp and a reading in each line becomes `CHANNEL/stamp` and `CHANNEL/value`.
