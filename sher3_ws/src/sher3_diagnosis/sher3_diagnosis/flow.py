@@ -73,8 +73,8 @@ def diagnose(
     say("judging")
     findings = weighed(findings, in_force(), machine.policy.own_level, costs)
     verdict = judge(machine, findings, exact, notes, costs)
-    versions = {p: version_of(p) for p in machine.sources}
-    verdict = verdict.model_copy(update={"seconds": time.perf_counter() - started, "versions": versions})
+    said = {"noise": list(machine.noise(runs)), "versions": {p: version_of(p) for p in machine.sources}}
+    verdict = verdict.model_copy(update={**said, "seconds": time.perf_counter() - started})
     return Diagnosis(verdict, findings, exact, machine)
 
 

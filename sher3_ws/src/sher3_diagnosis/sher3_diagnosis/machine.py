@@ -26,7 +26,7 @@ from sher3_diagnosis.fit.standardised import Standardised
 from sher3_diagnosis.fit.term import Term
 from sher3_diagnosis.fit.tolerance import within
 from sher3_diagnosis.reporter import Reporter
-from sher3_diagnosis.verdict import Cause, Identified, Interval, Within
+from sher3_diagnosis.verdict import Cause, Identified, Interval, Noise, Within
 
 R = TypeVar("R")
 """A run as the machine reads it."""
@@ -135,6 +135,10 @@ class Machine(ABC, Generic[R, E]):
 
     def identified(self, evidence: E) -> Sequence[Identified]:
         """Return the inertias of a part that were found from the data, and are no causes; default none."""
+        return ()
+
+    def noise(self, runs: Sequence[R]) -> Sequence[Noise]:
+        """Return how noisy the readings of every place are; default none, as of tables that have no clock."""
         return ()
 
     def unjudged(self, finding: Finding[E]) -> dict[Channel, str]:

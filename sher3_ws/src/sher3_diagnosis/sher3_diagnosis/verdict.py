@@ -74,6 +74,19 @@ class Identified(_Model):
     constants: dict[str, Parameter]
 
 
+class Noise(_Model):
+    """What single readings of a place differ by from the truth: white noise, rounding to `resolution` included.
+
+    `reading`: what is read, such as `position`, `load` or `effort`. `resolution`: None where the readings show no step.
+    """
+
+    actuator: str
+    reading: str
+    deviation: float = Field(ge=0.0, description="standard deviation")
+    resolution: float | None = Field(default=None, gt=0.0)
+    unit: str
+
+
 class Closure(_Model):
     """Closure with all causes added: at the first `where`, and at the tip when there was a tracker."""
 
@@ -196,6 +209,7 @@ class Verdict(_Model):
     next_experiment: NextExperiment | None = None
     within_tolerance: list[Within] = []
     identified: list[Identified] = []
+    noise: list[Noise] = []
     probabilities: dict[str, float] = {}
     costs: dict[str, float] = {}
     seconds: float = 0.0

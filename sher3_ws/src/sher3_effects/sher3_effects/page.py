@@ -67,8 +67,16 @@ CONSTANTS: Mapping[str, str] = {
     "shift_x": "shift of the joint along x of its frame",
     "shift_y": "shift of the joint along y of its frame",
     "shift_z": "shift of the joint along z of its frame",
+    "noise_position": "noise of its position readings, standard deviation",
+    "resolution_position": "their step",
+    "noise_load": "noise of its second encoder, standard deviation",
+    "resolution_load": "its step",
+    "noise_effort": "noise of its effort readings, standard deviation",
+    "resolution_effort": "their step",
 }
-"""Constants of the equation of motion of a joint that an effect may change, SI units."""
+"""Constants of the equation of motion of a joint, and of its readings, that a machine may have beyond its model, SI."""
+NOISE = tuple(name for name in CONSTANTS if name.startswith(("noise", "resolution")))
+"""Constants of a joint's readings."""
 
 
 class Part(NamedTuple):

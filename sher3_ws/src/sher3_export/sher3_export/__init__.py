@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 __getattr__, __dir__ = lazy(
     __name__,
     {
-        "changes": ("Change", "Untold", "changes_of"),
+        "changes": ("Change", "NotExpressed", "changes_of"),
         "errors": ("ExportError",),
         "writing": ("TARGETS", "Exported", "export"),
     },

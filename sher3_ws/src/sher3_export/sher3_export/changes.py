@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from sher3_diagnosis.verdict import Cause, Identified, Parameter
+from sher3_diagnosis.verdict import Cause, Identified, Noise, Parameter
 from sher3_diagnosis.words import words
 from sher3_effects import pages
-from sher3_effects.page import CONSTANTS
+from sher3_effects.page import CONSTANTS, NOISE
 
 KINDS = ("axis", "servo", "joint", "arm", "table", "law", "robot")
 """Kinds of machine whose pages say which constant a parameter sets."""
@@ -16,6 +16,8 @@ NO_FORCE = ("A", "V", "%", "count", "eu")
 """How the units begin of forces that nobody made newtons."""
 IDENTIFIED = "identified"
 """What stands for the effect of a constant that is no cause."""
+READINGS = "readings"
+"""What stands for the effect of the noise of readings."""
 FORCES = ("coulomb", "static", "offset")
 """Constants that a servo without a recorded force gives in units of its stiffness, m or rad."""
 
@@ -103,6 +105,24 @@ def identified_changes(found: Sequence[Identified], joints: Mapping[str, str] | 
     """Return the constants that were identified and are no causes; `joints` as in `changes_of`."""
     named = [((joints or {}).get(x.actuator, x.actuator), x) for x in found]
     return [_change(IDENTIFIED, joint, name, p) for joint, x in named for name, p in x.constants.items()]
+
+
+def noise_changes(noise: Sequence[Noise], joints: Mapping[str, str] | None = None) -> list[Change]:
+    """Return noise and step of the readings that are in SI units; `joints` as in `changes_of`."""
+    return [
+        Change((joints or {}).get(x.actuator, x.actuator), f"{kind}_{x.reading}", value, None, None, x.unit, READINGS)
+        for x in noise
+        if not x.unit.startswith(NO_FORCE)
+        for kind, value in (("noise", x.deviation), ("resolution", x.resolution))
+        if value is not None and f"{kind}_{x.reading}" in NOISE
+    ]
+
+
+def in_words(changes: Sequence[Change]) -> list[str]:
+    """Return a sentence for each change, and one for the noise of all readings."""
+    noisy = dict.fromkeys(x.joint for x in changes if x.effect == READINGS)
+    told = [f"noise of the readings of {', '.join(noisy)}"] if noisy else []
+    return [*(str(x) for x in changes if x.effect != READINGS), *told]
 
 
 def _whole(cause: Cause, joints: Mapping[str, str] | None, reason: str) -> NotExpressed:

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 from sher3_common import dump_yaml
-from sher3_diagnosis.verdict import Cause, Identified, Parameter, Verdict
+from sher3_diagnosis.verdict import Cause, Identified, Noise, Parameter, Verdict
 from sher3_diagnosis.words import range_text, share, words
 
 from sher3_export.changes import constants_of
@@ -32,6 +32,7 @@ class Ranges:
         remainder: joint -> force that the causes leave, standard deviation over a quarter of a second, N or N m; empty
             where it was not measured.
         identified: inertias beyond the model's, alike in all worlds.
+        noise: of readings, alike in all worlds.
         width: share of the 90 % intervals that the recorded motion needs; 1 where it was not measured.
         motors: motor whose causes these are, by the joint of its name -> joint -> its travel per travel of the joint.
     """
@@ -40,6 +41,7 @@ class Ranges:
     shares: Sequence[float] = ()
     remainder: Mapping[str, float] = field(default_factory=dict)
     identified: Sequence[Identified] = ()
+    noise: Sequence[Noise] = ()
     width: float = 1.0
     motors: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
 
@@ -85,6 +87,7 @@ class Ranges:
             "remainder": {j: float(s) for j, s in self.remainder.items()},
             "motors": {motor: dict(travel) for motor, travel in self.motors.items()},
             "identified": [{"place": x.actuator, **_ranges(x.constants, self.width)} for x in self.identified],
+            "noise": [x.model_dump(exclude_none=True) for x in self.noise],
         }
         whose = "motors: a cause at one of them is the motor's, by its own travel per travel of each joint."
         remarks = (
@@ -92,8 +95,9 @@ class Ranges:
             "width: of the verdict's 90 % intervals, as much as the recorded motion needs.",
             "remainder: force that the causes leave, standard deviation, constant for 0.25 s at a time.",
             *([whose] if self.motors else []),
+            *(["noise: standard deviation of single readings, to draw for each observation."] if self.noise else []),
         )
-        said = {name: x for name, x in data.items() if x or name not in ("motors", "identified")}
+        said = {name: x for name, x in data.items() if x or name not in ("motors", "identified", "noise")}
         return "".join(f"# {line}\n" for line in remarks) + dump_yaml(said)
 
 

@@ -8,15 +8,15 @@ from pathlib import Path
 from xml.etree.ElementTree import Element
 
 from sher3_chain.manipulator.description import BEHIND
-from sher3_diagnosis.verdict import Cause, Identified, Verdict
+from sher3_diagnosis.verdict import Cause, Identified, Noise, Verdict
 from sher3_effects.page import CONSTANTS
 
-from sher3_export.changes import Change, NotExpressed, changes_of, identified_changes
+from sher3_export.changes import Change, NotExpressed, changes_of, identified_changes, in_words, noise_changes
 from sher3_export.errors import ExportError
 from sher3_export.targets.configuration import Configuration
 from sher3_export.targets.isaac import Isaac, IsaacLab
-from sher3_export.targets.mjcf import Mjcf
-from sher3_export.targets.mjcf_whole import read_mjcf
+from sher3_export.targets.mjcf.model import Mjcf
+from sher3_export.targets.mjcf.whole import read_mjcf
 from sher3_export.targets.mjlab import Mjlab
 from sher3_export.targets.plain import Plain
 from sher3_export.targets.ros2_control import Ros2Control
@@ -55,7 +55,7 @@ def export(
     joints: Mapping[str, str] | None = None,
     motors: Motors | None = None,
 ) -> Exported:
-    """Write the causes of a verdict, and the inertias it identified, into a model.
+    """Write the causes of a verdict, the inertias it identified and the noise of its readings into a model.
 
     Args:
         verdict: of any machine.
@@ -69,7 +69,7 @@ def export(
             the case has a `coupling` and `motors` are not stated.
     """
     motors = travels_of(verdict, motors)
-    done, text = put(verdict.causes, target, model, joints, motors, verdict.identified)
+    done, text = put(verdict.causes, target, model, joints, motors, verdict.identified, verdict.noise)
     return replace(done, text=text(remarks(verdict, done.applied, done.not_expressed)))
 
 
@@ -88,8 +88,11 @@ def put(
     joints: Mapping[str, str] | None,
     motors: Motors | None = None,
     identified: Sequence[Identified] = (),
+    noise: Sequence[Noise] = (),
 ) -> tuple[Exported, Callable[[Sequence[str]], str]]:
-    """Write causes and identified inertias into a model; return what was done, and what makes the text of remarks.
+    """Write causes, identified inertias and noise into a model; return what was done, and what makes the text.
+
+    Noise of readings is no gap: a target that has no field for it need not say so of every joint.
 
     Raises:
         ExportError: as `export` does.
@@ -98,6 +101,7 @@ def put(
         raise ExportError("no such target", value=target, limit=", ".join(TARGETS), remedy="choose one of them")
     changes, not_expressed = changes_of(causes, joints)
     changes += identified_changes(identified, joints)
+    changes += [x for x in noise_changes(noise, joints) if x.constant in TARGETS[target].fields]
     writer = opened(TARGETS[target], model)
     applied: list[Change] = []
     for change in changes:
@@ -138,6 +142,6 @@ def remarks(verdict: Verdict, applied: Sequence[Change], not_expressed: Sequence
     """Return what stands in the comment of a file: what was written, what could not be, and what is not known."""
     rivals = [f"{c.effect} on {c.actuator} may as well be {', '.join(c.rivals)}" for c in verdict.causes if c.rivals]
     lines = [f"Causes of a diagnosis with status {verdict.status}, added to the nominal model.", "Written:"]
-    lines += [f"  {change}" for change in applied] or ["  nothing"]
+    lines += [f"  {text}" for text in in_words(applied)] or ["  nothing"]
     lines += ["Not expressed here:", *(f"  {x}" for x in not_expressed)] if not_expressed else []
     return lines + (["Not told apart:", *(f"  {x}" for x in rivals)] if rivals else [])

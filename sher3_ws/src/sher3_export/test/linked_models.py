@@ -3,7 +3,7 @@
 from xml.etree.ElementTree import tostring
 
 from sher3_chain.manipulator.bodies import bodies_of
-from sher3_export.targets.mjcf_body import skeleton
+from sher3_export.targets.mjcf.body import skeleton
 from sher3_export.xml_file import parse_xml
 
 MJCF = """<mujoco><asset><mesh name="looks" file="nowhere.stl"/></asset><worldbody><body name="upper" pos="0 0 1">

@@ -3,7 +3,7 @@
 import mujoco
 import pytest
 from sher3_export import ExportError, export
-from sher3_export.targets.mjcf_whole import read_mjcf
+from sher3_export.targets.mjcf.whole import read_mjcf
 from verdicts import cause, verdict
 
 ROBOT = """<mujoco><compiler angle="radian"/><include file="sub/classes.xml"/>

@@ -16,7 +16,7 @@ from sher3_diagnosis.finding import ExactFinding, Finding
 from sher3_diagnosis.flow import diagnose
 from sher3_diagnosis.judge.costs import DEFAULT, Costs
 from sher3_diagnosis.machine import Diagnosis, Machine, Rehearsal
-from sher3_diagnosis.verdict import Cause, Interval
+from sher3_diagnosis.verdict import Cause, Interval, Noise
 from sher3_effects import library
 
 from sher3_gap.case.audit import audit
@@ -28,6 +28,7 @@ from sher3_gap.stages.exact.controller import controller_finding
 from sher3_gap.stages.exact.evidence import exact_evidence
 from sher3_gap.stages.exact.pages import with_pages
 from sher3_gap.stages.exact.transport import transport_finding
+from sher3_gap.stages.noise import noise_of_sensors
 
 if TYPE_CHECKING:
     from sher3_gap.report.reporter import SherReporter
@@ -66,6 +67,10 @@ class Sher(Machine[RunSignals, SherEvidence]):
             gathered = partial(exact_evidence, runs, self.robot, finding.where.stage)
             out.append(replace(with_pages(finding, gathered, without), evidence=gathered))
         return out
+
+    def noise(self, runs: Sequence[RunSignals]) -> list[Noise]:
+        """Return the noise of encoders, efforts, force sensor and tracker."""
+        return noise_of_sensors(runs, self.robot)
 
     def rehearsals(self, evidence: SherEvidence) -> Iterator[Rehearsal]:
         """Yield the standard set as the nominal robot foresees it."""

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from sher3_diagnosis.flow import diagnose
 from sher3_diagnosis.machine import Diagnosis
 from sher3_diagnosis.report.summary import cause_text, five_lines, headline
-from sher3_diagnosis.verdict import Cause, Verdict, Where
+from sher3_diagnosis.verdict import Cause, Noise, Verdict, Where
 from sher3_diagnosis.words import place, quantity, words
 
 from sher3_public.cases import Case
@@ -65,6 +65,11 @@ class Answer:
     def places(self) -> Sequence[Where]:
         """Where the robot leaves its model: `stage`, `actuator`, `gap` and `floor` in `unit`, `regime`."""
         return self.verdict.where
+
+    @property
+    def noise(self) -> Sequence[Noise]:
+        """How noisy each reading is: `actuator`, `reading`, `deviation` (standard) and `resolution` in `unit`."""
+        return self.verdict.noise
 
     @property
     def guessed(self) -> Sequence[str]:

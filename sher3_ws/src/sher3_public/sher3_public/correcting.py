@@ -6,8 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from sher3_diagnosis.verdict import Verdict
-from sher3_export.targets.mjcf import Mjcf
-from sher3_export.targets.mjcf_whole import whole
+from sher3_export.changes import in_words
+from sher3_export.targets.mjcf.model import Mjcf
+from sher3_export.targets.mjcf.whole import whole
 from sher3_export.targets.sdf import Sdf
 from sher3_export.targets.urdf import Urdf
 from sher3_export.writing import export
@@ -53,4 +54,4 @@ def corrected(verdict: Verdict, source: Source | None, to: str = "") -> Correcte
         root = parse_xml(source.text, ROOTS[own])
         root = root if source.bodies.mujoco is None else whole(root, source.path)
     done = export(verdict, target, root)
-    return Corrected(done.text, [str(x) for x in done.applied], [str(x) for x in done.not_expressed])
+    return Corrected(done.text, in_words(done.applied), [str(x) for x in done.not_expressed])

@@ -45,7 +45,11 @@ def test_the_corrected_model_has_the_friction_of_both(answer, log, more, tmp_pat
     )
     assert after["turn"] == before["turn"]
     assert after["shoulder"] - before["shoulder"] == pytest.approx(more, rel=0.05)
-    assert len(done.written) == 1 and "shoulder" in str(done)
+    assert len(done.written) == 2 and "shoulder" in str(done)
+    assert done.written[1] == "noise of the readings of turn, shoulder"
+    assert [(x.reading, x.unit) for x in answer.noise] == [("position", "rad")] * 2
+    assert [x.deviation for x in answer.noise] == pytest.approx([1e-5] * 2, rel=0.1)
+    assert "turn position 9" in answer.report() or "turn position 10" in answer.report()
     again = gap.diagnose(str(tmp_path / "fixed.xml"), log.time, log.ctrl, log.qpos)
     assert again.places == [] or again.places[0].gap < 0.1 * answer.places[0].gap
 

@@ -102,14 +102,15 @@ def test_a_column_that_lost_its_last_rows_and_a_gain_that_is_none(log):
         gap.diagnose(MODEL, time, None, position, position, gain="large")
 
 
-@pytest.mark.parametrize("lost", ["positions", "whole rows"])
+@pytest.mark.parametrize("lost", ["positions", "one position", "one control", "whole rows"])
 def test_rows_of_nan_part_a_record(log, lost):
     time, control, position = (x.copy() for x in log)
-    for x in (position,) if lost == "positions" else (time, control, position):
+    one = {"one position": (position[:, 1],), "one control": (control[:, 0],), "positions": (position,)}
+    for x in one.get(lost, (time, control, position)):
         x[2000:2300] = np.nan
     answer = gap.diagnose(MODEL, time, control, position)
     assert named(answer) == {("coulomb_friction", "elbow")}
-    assert any("cut into 2 parts, because its clock has holes; 300 samples" in note for note in answer.notes)
+    assert any("cut into 2 parts, because it has holes; 300 samples" in note for note in answer.notes)
 
 
 def test_samples_one_by_one_a_structured_array_and_names_in_two_levels(log):

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 
 import numpy as np
 from sher3_diagnosis.channel import Array, Mask
+from sher3_diagnosis.localise.readings import noise_of
 
 from sher3_chain.joint.description import Axis
-from sher3_chain.readings.noise import noise_of
 from sher3_chain.readings.signals import AxisSignals
 
 DEPTH = 5e-3
@@ -57,7 +57,7 @@ def stop_of(signals: Sequence[AxisSignals], axis: Axis, side: float) -> float | 
     """
     places = [side * s.motor[:, 0] for s in signals]
     end, start = max(float(x.max()) for x in places), min(float(x.min()) for x in places)
-    fine = max(axis.encoder_resolution, *(noise_of(x, s.period) for x, s in zip(places, signals, strict=True)))
+    fine = max(axis.encoder_resolution, *map(noise_of, places))
     depth = max(CLEAR * fine, DEPTH * (end - start))
     mass = axis.mass if isinstance(axis.mass, float) and not axis.servo else 0.0
     held, most = [], 0.0

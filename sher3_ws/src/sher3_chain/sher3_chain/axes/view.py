@@ -8,12 +8,12 @@ import numpy as np
 from sher3_diagnosis.channel import Array, Channel, Mask
 from sher3_diagnosis.discover.feature import Quantities, Quantity
 from sher3_diagnosis.filter import EDGE, settled
+from sher3_diagnosis.localise.readings import noise_of
 from sher3_effects.operators import second_difference
 from sher3_effects.view import NominalAxis
 
 from sher3_chain.chain.view import AROUND_STOP, BUILDS_UP, LEAD_OF_STROKE, SLIP, ChainView, Loads
 from sher3_chain.joint.description import Axis
-from sher3_chain.readings.noise import noise_of
 from sher3_chain.readings.orders import orders_in
 from sher3_chain.readings.signals import AxisSignals
 from sher3_chain.thresholds import SLOW
@@ -151,7 +151,7 @@ class AxisView(ChainView):
     @cached_property
     def noise(self) -> float:
         """Standard deviation of the encoder's noise, m or rad."""
-        return noise_of(self.run.motor[:, 0], self.run.period)
+        return noise_of(self.run.motor[:, 0])
 
     @cached_property
     def _jitter(self) -> float:

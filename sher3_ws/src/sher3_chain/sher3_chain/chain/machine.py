@@ -14,12 +14,14 @@ from sher3_diagnosis.attribute.search import Left
 from sher3_diagnosis.fit.fitting import Fit
 from sher3_diagnosis.judge.left_over import down_to_floor
 from sher3_diagnosis.machine import Machine
+from sher3_diagnosis.verdict import Noise
 from sher3_machines.intake.notes import merged
 
 from sher3_chain.chain.evidence import ChainEvidence
 from sher3_chain.joint.conditions import Condition, conditions_of, confounded_conditions, reference_runs
 from sher3_chain.joint.description import ChainDescription
 from sher3_chain.joint.record import AxesRun
+from sher3_chain.readings.noise import noise_of_joint
 from sher3_chain.readings.wrong import wrong_readings
 from sher3_chain.search.changes import contrasted, of_runs
 
@@ -78,6 +80,14 @@ class Chain(Machine[AxesRun, E]):
     def conditions(self, runs: Sequence[AxesRun]) -> list[Condition]:
         """Return the conditions that differ from that of the first run."""
         return conditions_of(self.described.conditions, [run.name for run in runs])
+
+    def noise(self, runs: Sequence[AxesRun]) -> list[Noise]:
+        """Return the noise of every reading that changes; a place that is the sum of a speed has none of its own."""
+        return [
+            x
+            for joint in self.described.chain
+            for x in noise_of_joint(joint, [run.signals[joint.name] for run in runs])
+        ]
 
     def repeated(self, runs: Sequence[AxesRun]) -> bool:
         """Return whether the runs are repeats of one motion."""

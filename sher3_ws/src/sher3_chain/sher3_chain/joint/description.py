@@ -201,6 +201,11 @@ class Axis(Strict):
         return read.unit in VOLTAGES if read is not None else command is not None and command.unit in DEMANDS
 
     @property
+    def effort_as_read(self) -> tuple[float, str]:
+        """Force per unit of the recorded effort, and the unit of that force."""
+        return 1.0, self.unit_of_force
+
+    @property
     def unit_of_force(self) -> str:
         """Unit of forces."""
         if self.own_unit:

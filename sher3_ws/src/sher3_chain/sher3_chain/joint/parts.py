@@ -7,12 +7,13 @@ from sher3_diagnosis.channel import Array, Mask
 from sher3_machines.errors import MachineError
 from sher3_machines.intake.columns import clock_beside, find
 from sher3_machines.intake.fields import Clock, Column
-from sher3_machines.intake.mending.parts import cut
+from sher3_machines.intake.mending.parts import LONGEST_HOLE, SHORTEST, cut
 from sher3_machines.intake.mending.stretches import MOST_READINGS, beginning, spread
 from sher3_machines.intake.spelling import table_of
 from sher3_machines.intake.tables import Tables
 
 from sher3_chain.joint.description import ChainDescription
+from sher3_chain.joint.record import STILL
 
 
 def parts_of_record(
@@ -20,8 +21,9 @@ def parts_of_record(
 ) -> tuple[dict[str, Tables], str]:
     """Return the parts of a record by name, and a note; the record itself where it is read whole.
 
-    It is cut where its clock has holes or jumps back; of more readings than an answer needs stretches are taken. A
-    repeat is one part, and of more readings its beginning: repeats are held against each other from their first sample.
+    It is cut where its clock jumps back, and at holes of its clock or of a column; of more readings than an answer
+    needs stretches are taken. A repeat is one part, and of more readings its beginning: repeats are held against each
+    other from their first sample.
 
     Args:
         name: of the run.
@@ -57,16 +59,31 @@ def _cut_at_holes(name: str, tables: Tables, machine: ChainDescription) -> tuple
     table = homes.pop()
     try:
         stamps = find(f"{table}/{clock}" if table else clock, tables, name)
-        return cut(name, tables, stamps, _placed(name, tables, machine, len(tables[stamps])))
+        return cut(name, tables, stamps, _read(name, tables, machine, tables[stamps]))
     except MachineError:
         return {name: tables}, ""  # the reader names what is missing
 
 
-def _placed(name: str, tables: Tables, machine: ChainDescription, rows: int) -> Mask:
-    """Return the rows (n,) in which any joint has a place; of many rows without one a record has a hole there."""
+def _read(name: str, tables: Tables, machine: ChainDescription, stamps: Array) -> Mask:
+    """Return the rows (n,) in which any joint has a place and no column a hole: joints are judged together."""
     found = [tables[find(axis.signals.position.column, tables, name)] for axis in machine.chain]
-    placed = [np.isfinite(x).any(axis=tuple(range(1, x.ndim))) for x in found if len(x) == rows]
-    return np.any(placed, axis=0) if placed else np.ones(rows, dtype=bool)
+    placed = [np.isfinite(x).any(axis=tuple(range(1, x.ndim))) for x in found if len(x) == len(stamps)]
+    read = np.any(placed, axis=0) if placed else np.ones(len(stamps), dtype=bool)
+    for x in (tables[find(column.column, tables, name)] for column in columns_of(machine)):
+        if x.shape == stamps.shape:
+            read &= ~_in_hole(stamps, x)
+    return np.asarray(read)
+
+
+def _in_hole(stamps: Array, x: Array) -> Mask:
+    """Return the rows (n,) in a hole of a column (n,), over which it changes, by the periods of its own readings."""
+    known = np.flatnonzero(np.isfinite(x) & np.isfinite(stamps))
+    out, steps = np.zeros(len(x), dtype=bool), np.diff(stamps[known])
+    if len(known) >= SHORTEST:
+        moved = np.abs(np.diff(x[known])) > STILL * np.ptp(x[known])
+        for i in np.flatnonzero(moved & (steps > LONGEST_HOLE * np.median(steps))):
+            out[known[i] + 1 : known[i + 1]] = True
+    return out
 
 
 def _rows(tables: Tables) -> int:

@@ -8,6 +8,7 @@ from typing import Literal
 from pydantic import Field, model_validator
 
 from sher3_chain.joint.description import Axis, ChainDescription, CommandLaw
+from sher3_chain.joint.own_unit import RECORDED
 
 Row = tuple[float, ...]
 PER_RUN = "per_run"
@@ -49,6 +50,12 @@ class Joint(Axis):
     def needs_force(self) -> bool:
         """Whether a joint without a recorded force is refused: no, it only moves the others."""
         return False
+
+    @property
+    def effort_as_read(self) -> tuple[float, str]:
+        """Force per unit of the recorded effort, and its unit: that of the recorder where no gain is stated."""
+        newton = "N" if self.motion == "linear" else "N*m"
+        return (1.0, RECORDED) if isinstance(self.gain, str) else (abs(self.gain), newton)
 
     @model_validator(mode="after")
     def _drives(self) -> Joint:

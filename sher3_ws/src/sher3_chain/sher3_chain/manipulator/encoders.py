@@ -13,6 +13,7 @@ from dataclasses import replace
 import numpy as np
 from sher3_diagnosis.channel import Array, Mask
 from sher3_diagnosis.localise.floors import GAUSSIAN
+from sher3_diagnosis.localise.readings import noise_of
 from sher3_effects.delay import LONGEST_DELAY, shifted
 from sher3_effects.operators import dahl
 
@@ -20,7 +21,6 @@ from sher3_chain.chain.view import BUILDS_UP, LEAD_OF_STROKE
 from sher3_chain.manipulator.description import Joint
 from sher3_chain.manipulator.model import ArmModel
 from sher3_chain.manipulator.signals import JointSignals
-from sher3_chain.readings.noise import noise_of
 from sher3_chain.readings.signals import AxisSignals
 from sher3_chain.thresholds import ALIGNED, DELAYED
 
@@ -97,7 +97,7 @@ def crossing(run: AxisSignals, row: int) -> Mask:
 def _quiet(run: JointSignals, row: int, joint: Joint) -> bool:
     """Whether the second encoder of a joint is as quiet as the first."""
     assert run.load is not None
-    own, other = (noise_of(x[:, row], run.period) for x in (run.motor, run.load))
+    own, other = (noise_of(x[:, row]) for x in (run.motor, run.load))
     return bool(other <= NOISIER * max(own, joint.encoder_resolution))
 
 

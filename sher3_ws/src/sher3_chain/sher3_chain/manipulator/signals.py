@@ -10,7 +10,7 @@ from sher3_diagnosis.channel import Array
 
 from sher3_chain.joint.record import AxesRun
 from sher3_chain.manipulator.description import ManipulatorDescription
-from sher3_chain.readings.noise import cut_off
+from sher3_chain.readings.cut_off import cut_off
 from sher3_chain.readings.signals import AxisSignals, signals_of
 
 

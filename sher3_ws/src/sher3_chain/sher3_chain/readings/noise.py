@@ -1,92 +1,35 @@
-"""How noisy an encoder is, and up to which frequency its second difference still is an acceleration.
-
-A mass found by least squares on a noisy acceleration is too small: the noise is in the regressor (attenuation). The
-noise of a position grows with the square of the frequency when it is differentiated twice, the motion of a machine does
-not; a lower cut-off, the same for every signal, takes the noise out and leaves the equations true.
-"""
+"""How noisy the readings of a joint are, in the units in which the joint is judged."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
+
 import numpy as np
-from scipy.special import binom
 from sher3_diagnosis.channel import Array
-from sher3_diagnosis.filter import low_pass
-from sher3_diagnosis.localise.floors import GAUSSIAN
-from sher3_diagnosis.thresholds import EATEN
+from sher3_diagnosis.localise.readings import noise_in
+from sher3_diagnosis.verdict import Noise
+from sher3_machines.drafting.guesses import count_of
 
-from sher3_chain.thresholds import NOISE_SHARE, SLOWEST_CUT
-
-ORDER = 5
-"""Difference of the position that leaves its noise alone: what moves slowly against the samples is gone in it."""
-TOP = 0.85
-"""Share of the Nyquist frequency from which nothing of the motion is left."""
-SHORTEST = 64
-"""Samples below which a record has too few frequencies."""
-STEP = 0.8
-"""Factor from one cut-off that is tried to the next."""
-ENDS = 2.0
-"""Periods of the cut-off at each end of a record that the filter spoils."""
+from sher3_chain.joint.description import Axis
+from sher3_chain.joint.record import READINGS
 
 
-def noise_of(position: Array, period: float) -> float:
-    """Return the standard deviation of white noise in a position (n,): of two figures that hold too much the smaller.
+def noise_of_joint(joint: Axis, records: Sequence[Mapping[str, Array]]) -> list[Noise]:
+    """Return the noise of every reading of a joint that changes.
 
-    The noise of a fifth difference has the sum of squares of the binomial coefficients in power; in a slow record it
-    holds motion too, which the highest frequencies do not.
-    """
-    power = float(np.sum(binom(ORDER, np.arange(ORDER + 1)) ** 2))
-    bend = np.diff(position, ORDER)
-    size = GAUSSIAN * float(np.median(np.abs(bend))) / np.sqrt(power)
-    return min(size, noise_at_the_top(position))
-
-
-def noise_at_the_top(position: Array) -> float:
-    """Return the standard deviation of white noise in a position (n,) that has the power of its highest frequencies."""
-    n = len(position)
-    if n < SHORTEST:
-        return np.inf
-    window = np.hanning(n)
-    line = np.polyval(np.polyfit(np.arange(n), position, 1), np.arange(n))
-    power = np.abs(np.fft.rfft((position - line) * window)) ** 2 / np.sum(window**2)
-    return float(np.sqrt(np.mean(power[int(TOP * len(power)) :])))
-
-
-def cut_off(position: Array, period: float, most: float, free: bool = False) -> float:
-    """Return the highest cut-off, Hz, at which noise is a small share of the acceleration; at most `most`.
-
-    Of a body that nothing drives hardly anything but its weight accelerates it, which is known or fitted: what is
-    judged is the rest, and noise is to be a small share of that.
+    A place that is the sum of a speed, or an effort that follows from a law, is no reading.
 
     Args:
-        position: as recorded, (n,).
-        period: of its samples, s.
-        most: cut-off without noise, Hz.
-        free: whether nothing drives the axis.
+        joint: as described.
+        records: signal -> readings (n,), of each record.
     """
-    noise = noise_of(position, period)
-    white = noise * np.random.default_rng(0).normal(size=len(position))
-    cut, highest = most, most  # at no cut-off is there an acceleration to be told: none is worth the samples it costs
-    while cut > SLOWEST_CUT:
-        found, false = (_acceleration(x, period, cut) for x in (position, white))
-        if np.var(false) <= NOISE_SHARE * np.var(found):
-            highest = cut if highest == most else highest
-            if not free or np.var(false) <= EATEN**2 * np.var(_without_weight(found, position, period, cut)):
-                return cut
-        cut *= STEP
-    return highest
-
-
-def _without_weight(acceleration: Array, position: Array, period: float, cut: float) -> Array:
-    """Return what a weight at an arm, a spring and a constant leave of a filtered acceleration."""
-    q = position[1:-1]
-    near = np.column_stack([low_pass(x, period, cut) for x in (np.sin(q), np.cos(q), q)])
-    end = (len(near) - len(acceleration)) // 2
-    x = np.column_stack([near[end : len(near) - end], np.ones(len(acceleration))])
-    return np.asarray(acceleration - x @ np.linalg.lstsq(x, acceleration, rcond=None)[0])
-
-
-def _acceleration(x: Array, period: float, cut: float) -> Array:
-    """Filtered second difference without the ends, which the filter spoils."""
-    found = low_pass(np.diff(x, 2), period, cut) / period**2
-    end = min(len(found) // 4, int(ENDS / cut / period))
-    return found[end : len(found) - end]
+    gain, force = joint.effort_as_read
+    out = []
+    for reading in READINGS:
+        scale, unit = (gain, force) if reading == "effort" else (1.0, joint.unit_of_position)
+        read = getattr(joint.signals, reading) is not None and not (reading == "position" and joint.summed)
+        moving = [scale * found[reading] for found in records if reading in found and np.ptp(found[reading]) > 0.0]
+        if read and moving:
+            steps = [step for x in moving if (step := count_of(x)) is not None]
+            out.append(noise_in(joint.name, reading, unit, moving, max(steps, default=0.0)))
+    return out

@@ -13,8 +13,8 @@ from sher3_effects.motion import FilteredRun
 
 from sher3_chain.joint.description import Axis
 from sher3_chain.joint.record import AxesRun
+from sher3_chain.readings.cut_off import cut_off
 from sher3_chain.readings.level import at_a_level, off
-from sher3_chain.readings.noise import cut_off
 
 NYQUIST_SHARE = 0.4
 """Cut-off over the Nyquist rate where a record is too slow for the engine's: two differentiations must survive it."""

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from sher3_chain.axes.view import AxisView
 from sher3_chain.joint.record import AxesRun
-from sher3_chain.readings.noise import cut_off
+from sher3_chain.readings.cut_off import cut_off
 from sher3_chain.readings.signals import signals_of
 from sher3_diagnosis import diagnose
 from slides import axis_of, machine

@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 from sher3_chain.joint.record import AxesRun
-from sher3_chain.readings.noise import cut_off, noise_of
+from sher3_chain.readings.cut_off import cut_off
 from sher3_diagnosis import diagnose
+from sher3_diagnosis.localise.readings import noise_of
 from slides import machine
 
 MASS, COULOMB, VISCOUS, KP, KD = 8.0, 6.0, 12.0, 2.0e4, 160.0
@@ -45,8 +46,8 @@ def test_the_noise_of_an_encoder_is_told_from_its_motion():
     t = 0.005 * np.arange(4000)
     moving = 0.1 * np.sin(2.0 * t)
     noisy = moving + 2e-5 * np.random.default_rng(0).normal(size=len(t))
-    assert noise_of(noisy, 0.005) == pytest.approx(2e-5, rel=0.1)
-    assert noise_of(moving, 0.005) < 1e-8
+    assert noise_of(noisy) == pytest.approx(2e-5, rel=0.1)
+    assert noise_of(moving) < 1e-8
     assert cut_off(moving, 0.005, 40.0) == 40.0 and 2.0 < cut_off(noisy, 0.005, 40.0) < 20.0
 
 

@@ -13,7 +13,7 @@ from sher3_diagnosis.report.drawing import STYLE
 from sher3_diagnosis.report.found import closures, found_rows
 from sher3_diagnosis.report.odds import answered, sizes
 from sher3_diagnosis.report.regimes import regimes
-from sher3_diagnosis.report.summary import command, five_lines, headline
+from sher3_diagnosis.report.summary import command, five_lines, headline, noise_text
 from sher3_diagnosis.report.traces import traces
 from sher3_diagnosis.words import place, quantity, ratio_text, share, words
 
@@ -82,6 +82,7 @@ def _sections(diagnosis: Diagnosis, title: str, typed: tuple[str, str, str], in_
         picture=reporter.picture(diagnosis),
         command=going,
         data=reporter.data(parts),
+        noise=noise_text(verdict.noise),
         chain=chain(diagnosis, reporter),
         traces=traces(diagnosis, reporter),
         table=table,

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 from typing import Any
 
 from sher3_diagnosis.report.odds import name_of, odds, significant, sized
 from sher3_diagnosis.report.odds import shown_parameters as shown_parameters
 from sher3_diagnosis.reporter import Reporter, Table
-from sher3_diagnosis.verdict import Cause, Interval, Verdict
+from sher3_diagnosis.verdict import Cause, Interval, Noise, Verdict
 from sher3_diagnosis.words import listed, lower, place, quantity, range_text, ratio_text, share, words
 
 LEFT_OVER = 1.2
@@ -89,6 +89,16 @@ def cause_text(cause: Cause) -> str:
         text += f", {name.replace('_', ' ')} {p.means or quantity(p.value, p.unit)}"
         text += "" if p.low is None else f" ({range_text(p.low, p.high, p.unit)})"
     return text + (f" [or {', '.join(words(r).lower() for r in cause.rivals)}]" if cause.rivals else "")
+
+
+def noise_text(noise: Sequence[Noise]) -> str:
+    """Return the noise of every reading, place by place."""
+    each = {x.actuator: [y for y in noise if y.actuator == x.actuator] for x in noise}
+    said = (
+        f"{place(name)} " + ", ".join(f"{x.reading} {quantity(x.deviation, x.unit)}" for x in found)
+        for name, found in each.items()
+    )
+    return "; ".join(said)
 
 
 def closure_text(value: Interval) -> str:

@@ -19,7 +19,7 @@ from sher3_machines.thresholds import BLOCKS
 from sher3_export.check.engine import Engine, compiled, copied, prepared
 from sher3_export.check.model_of import model_of, model_of_arm
 from sher3_export.check.recorded import Recorded, recorded
-from sher3_export.targets.mjcf_whole import read_mjcf
+from sher3_export.targets.mjcf.whole import read_mjcf
 from sher3_export.writing import Exported, Motors, export
 from sher3_export.xml_file import write_xml
 

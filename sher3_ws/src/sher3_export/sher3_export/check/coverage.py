@@ -88,7 +88,9 @@ def covered(
     """
     bench = bench_of(verdict, case, model, joints, motors)
     worlds = worlds_of(verdict, without_each(verdict, case))
-    ranges = Ranges(worlds, shares_of(verdict, worlds), identified=verdict.identified, motors=motors or {})
+    ranges = Ranges(
+        worlds, shares_of(verdict, worlds), identified=verdict.identified, noise=verdict.noise, motors=motors or {}
+    )
     text = export(verdict, "mjcf", copied(bench.root), joints, motors).text
     found = windows_of(bench, text, ranges, joints)
     scatters = {joint: scatter_of(x, len(ranges.worlds) == 1) for joint, x in found.items()}

@@ -17,7 +17,7 @@ from sher3_diagnosis.channel import Array
 
 from sher3_export.check.recorded import Recorded, Track
 from sher3_export.errors import ExportError, MujocoMissing
-from sher3_export.targets.mjcf_body import controlled
+from sher3_export.targets.mjcf.body import controlled
 from sher3_export.xml_file import written
 
 WINDOW = 0.25

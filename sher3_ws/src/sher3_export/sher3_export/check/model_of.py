@@ -14,7 +14,7 @@ from sher3_description.contract import GRAVITY
 
 from sher3_export.check.engine import mujoco
 from sher3_export.errors import ExportError
-from sher3_export.targets.mjcf_whole import whole
+from sher3_export.targets.mjcf.whole import whole
 from sher3_export.xml_file import MAX_BYTES, parse_xml, written
 
 SLENDER = 0.5

@@ -6,6 +6,8 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import ClassVar
 
+from sher3_effects.page import NOISE
+
 from sher3_export.changes import Change
 from sher3_export.targets.target import Target, XmlTarget
 
@@ -22,12 +24,14 @@ GAINS: Mapping[str, tuple[str, ...]] = {
     "servo_velocity": ("damping",),
 }
 """Constant of a servo -> gains that it scales."""
+OF_READINGS: Mapping[str, str] = dict.fromkeys(NOISE, "NOISE, of the file")
+"""Constants of which no actuator has a field: they are for the noise of observations, by joint."""
 OF_GAINS = {constant: ", ".join(names) for constant, names in GAINS.items()}
 """The same as text."""
 
 
 class Configuration(Target):
-    """A Python file with `ACTUATORS`, by joint, and `RANGES`, by joint and field.
+    """A Python file with `ACTUATORS`, by joint, `RANGES`, by joint and field, and `NOISE`, by joint and reading.
 
     Class attributes:
         source: module that has the classes.
@@ -54,6 +58,7 @@ class Configuration(Target):
         self.step = STEP if model is None else model.step or STEP
         self.groups: dict[str, dict[str, float]] = {}
         self.ranges: dict[str, dict[str, tuple[float, float]]] = {}
+        self.noise: dict[str, dict[str, float]] = {}
 
     def apply(self, change: Change) -> str:
         """Write a change into the group of its joint; return why it cannot be written, or nothing."""
@@ -61,6 +66,9 @@ class Configuration(Target):
             return "given in units of the servo's stiffness, which is not known here"
         if change.constant not in self.fields:
             return self.refuses.get(change.constant, f"{self.name} has no field for it")
+        if change.constant in NOISE:
+            self.noise.setdefault(change.joint, {})[change.constant] = change.value
+            return ""
         group, ranges = self.groups.setdefault(change.joint, {}), self.ranges.setdefault(change.joint, {})
         if change.constant in DELAYS:
             shortest, longest = self.delays
@@ -91,13 +99,15 @@ class Configuration(Target):
         """Return the file."""
         self.finish()
         lines = [*self.said(remarks), "RANGES: 95 % intervals of the fields, to draw from in domain randomisation."]
+        lines += ["NOISE: standard deviation of readings, the `std` of a GaussianNoiseCfg of observations."]
         used = sorted({self._class(group) for group in self.groups.values()} or {self.plain})
         groups = "".join(f"    {joint!r}: {self._group(joint, group)},\n" for joint, group in self.groups.items())
         ranges = "".join(f"    {joint!r}: {found!r},\n" for joint, found in self.ranges.items() if found)
+        noise = "".join(f"    {joint!r}: {found!r},\n" for joint, found in self.noise.items())
         head = "".join(f"# {' '.join(line.splitlines())}\n" for line in lines)
         return (
             f"{head}\nfrom {self.source} import {', '.join(used)}\n\n"
-            f"ACTUATORS = {{\n{groups}}}\n\nRANGES = {{\n{ranges}}}\n{self.beside()}"
+            f"ACTUATORS = {{\n{groups}}}\n\nRANGES = {{\n{ranges}}}\n\nNOISE = {{\n{noise}}}\n{self.beside()}"
         )
 
     def beside(self) -> str:

@@ -12,7 +12,7 @@ from typing import ClassVar
 
 from sher3_common import dump_yaml
 
-from sher3_export.targets.configuration import DELAYS, OF_GAINS, Configuration
+from sher3_export.targets.configuration import DELAYS, OF_GAINS, OF_READINGS, Configuration
 from sher3_export.targets.links import INERTIAL
 from sher3_export.targets.target import NOT_GIVEN, each
 
@@ -35,6 +35,7 @@ class IsaacLab(Configuration):
         "limit": "actuator_effort_limit",
         **dict.fromkeys(DELAYS, "min_delay, max_delay"),
         **OF_GAINS,
+        **OF_READINGS,
     }
     refuses: ClassVar[Mapping[str, str]] = {
         **NOT_GIVEN,
@@ -81,4 +82,4 @@ class Isaac(IsaacLab):
         }
         ranges = {joint: {n: list(x) for n, x in found.items()} for joint, found in self.ranges.items() if found}
         head = "".join(f"# {line}\n" for line in self.said(remarks))
-        return head + dump_yaml({"actuators": groups, "ranges": ranges})
+        return head + dump_yaml({"actuators": groups, "ranges": ranges, "noise": self.noise})

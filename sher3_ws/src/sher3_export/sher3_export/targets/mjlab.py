@@ -11,8 +11,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import ClassVar
 
-from sher3_export.targets.configuration import DELAYS, GAINS, OF_GAINS, Configuration
-from sher3_export.targets.mjcf import Mjcf
+from sher3_export.targets.configuration import DELAYS, GAINS, OF_GAINS, OF_READINGS, Configuration
+from sher3_export.targets.mjcf.model import Mjcf
 from sher3_export.targets.target import XmlTarget
 
 MODEL = "it stands in the MJCF that mjlab loads: write it there with --to mjcf"
@@ -23,6 +23,7 @@ FIELDS: Mapping[str, str] = {
     **OF_JOINT,
     **dict.fromkeys(DELAYS, "delay_min_lag, delay_max_lag"),
     **OF_GAINS,
+    **OF_READINGS,
 }
 """Constant -> field that takes it."""
 WRITTEN = '''

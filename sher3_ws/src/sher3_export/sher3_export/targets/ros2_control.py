@@ -22,8 +22,13 @@ PARAMETERS = (
     *("coulomb", "static", "stribeck", "viscous", "load_loss", "offset", "drive", "inertia", "delay"),
     *("servo", "servo_position", "servo_velocity", "servo_delay", "lag", "zero"),
     *("cogging", "cogging_periods", "cogging_phase", "ratio", "backlash", "compliance", "spring", "rest"),
+    *("noise_load", "resolution_load"),
 )
 """Constants that become a parameter of the joint with their own name, SI units."""
+READ = {
+    name: name.split("_") for name in ("noise_position", "resolution_position", "noise_effort", "resolution_effort")
+}
+"""Constants of a reading -> name of a parameter of a state interface, and that interface."""
 LINK = "it belongs to a link of the URDF, not to the hardware of a joint"
 
 
@@ -34,6 +39,7 @@ class Ros2Control(Target):
     fields: ClassVar[Mapping[str, str]] = {
         **{name: f'param "{name}"' for name in PARAMETERS},
         "limit": "min and max of the command interface `effort`",
+        **{name: f'param "{kind}" of `{interface}`' for name, (kind, interface) in READ.items()},
     }
     refuses: ClassVar[Mapping[str, str]] = each(
         {
@@ -55,7 +61,7 @@ class Ros2Control(Target):
         for ending, value in (("", change.value), ("_low", change.low), ("_high", change.high)):
             name = f"{change.constant}{ending}"
             if value is not None:
-                joint[name] = value + (0.0 if change.constant == "limit" else joint.get(name, 0.0))
+                joint[name] = value + (0.0 if change.constant in ("limit", *READ) else joint.get(name, 0.0))
         return ""
 
     def text(self, remarks: Sequence[str]) -> str:
@@ -69,13 +75,16 @@ class Ros2Control(Target):
                 if constant == "limit":
                     for end, sign in (("min", -1.0), ("max", 1.0)):
                         SubElement(command, "param", {"name": end}).text = written(sign * value)
-                else:
+                elif constant not in READ:
                     SubElement(joint, "param", {"name": constant}).text = written(value)
             for state in ("position", "velocity", "effort"):
-                SubElement(joint, "state_interface", {"name": state})
+                interface = SubElement(joint, "state_interface", {"name": state})
+                for constant, (kind, read) in READ.items():
+                    if read == state and constant in constants:
+                        SubElement(interface, "param", {"name": kind}).text = written(constants[constant])
         ElementTree.indent(root)
         note = (
             "Parameters: SI units, beyond the nominal model; between _low and _high with 95 %, to draw from. "
-            "mock_components ignores them; your component reads them."
+            "noise: standard deviation of an interface. mock_components ignores them; your component reads them."
         )
         return write_xml(root, [*remarks, note])

@@ -6,6 +6,8 @@ from collections.abc import Mapping, Sequence
 from typing import ClassVar
 from xml.etree.ElementTree import Element
 
+from sher3_effects.page import NOISE
+
 from sher3_export.changes import Change
 from sher3_export.targets.links import INERTIAL
 from sher3_export.targets.target import NOT_GIVEN, Row, XmlTarget, each
@@ -36,6 +38,7 @@ class Sdf(XmlTarget):
                 "link": "the inertial element of a link is no part of a joint; scale its mass and inertia by hand",
                 " ".join(INERTIAL): "the inertial element is no part of a joint; export a URDF and convert it",
                 "payload payload_x payload_y payload_z": PAYLOAD,
+                " ".join(NOISE): "SDF has noise for sensors of a link, and no sensor that reads a joint",
                 "shift_x shift_y shift_z": "the pose of the child link belongs to the model's tree; shift it by hand",
             }
         ),

@@ -8,6 +8,7 @@ from xml.etree.ElementTree import Element, SubElement
 
 import numpy as np
 from scipy.spatial.transform import Rotation
+from sher3_effects.page import NOISE
 
 from sher3_export.changes import Change
 from sher3_export.targets.links import INERTIAL, WANTED, Inertia, WrongLinks
@@ -38,6 +39,7 @@ class Urdf(XmlTarget):
                 "backlash compliance": ELASTIC,
                 "payload payload_x payload_y payload_z": PAYLOAD,
                 "spring rest": ELASTIC,
+                " ".join(NOISE): "a URDF has no sensor of a joint; --to ros2_control has its interfaces",
             }
         ),
     }

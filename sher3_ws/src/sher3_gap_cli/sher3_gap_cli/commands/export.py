@@ -97,9 +97,11 @@ def _model(
 
 
 def _exported(done: Exported, gaps: Any) -> dict[str, Any]:
+    from sher3_export.changes import in_words
+
     return {
         "text": done.text,
-        "written": [str(change) for change in done.applied],
+        "written": in_words(done.applied),
         "not_expressed": [str(text) for text in done.not_expressed],
         "gaps": [gap_data(gap) for gap in gaps],
     }
@@ -112,7 +114,7 @@ def _ranges(given: Any, check: Path | None, model: Path | None, names: dict[str,
     from sher3_export.writing import travels_of
 
     if check is None:
-        ranges = Ranges(worlds_of(given), identified=given.identified, motors=travels_of(given, motors))
+        ranges = Ranges(worlds_of(given), (), {}, given.identified, given.noise, motors=travels_of(given, motors))
         return {"text": ranges.text(), "ranges": ranges.lines(), "coverage": {}}
     found = covered(given, check, model, names, motors)
     return {"text": found.ranges.text(), "ranges": found.ranges.lines(), "coverage": dict(found.coverage)}

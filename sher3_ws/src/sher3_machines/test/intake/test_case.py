@@ -118,7 +118,7 @@ def test_bad_records_are_named(tmp_path, spoil, words):
     [
         (_nan, "1 of 500 readings are missing or not finite"),
         (_back, "1 samples came in a wrong order"),
-        (_hole, "is cut into 2 parts, because its clock has holes"),
+        (_hole, "is cut into 2 parts, because it has holes"),
     ],
 )
 def test_small_faults_of_a_log_are_mended_and_said(tmp_path, spoil, words):

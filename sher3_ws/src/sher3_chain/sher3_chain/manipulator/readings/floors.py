@@ -10,11 +10,11 @@ from collections.abc import Sequence
 
 import numpy as np
 from sher3_diagnosis.channel import Array, Channel, Floors, Residuals
+from sher3_diagnosis.localise.readings import noise_of
 
 from sher3_chain.floors.innovation import NOTHING, UNIFORM, chain_floors, plain_innovation, white_behind
 from sher3_chain.manipulator.description import PER_RUN
 from sher3_chain.manipulator.view import MotionView
-from sher3_chain.readings.noise import noise_of
 
 POSTURES = 100
 """Postures of a record at which the inertia is reckoned: an rms over them is known to a few per cent."""
@@ -39,10 +39,7 @@ def resolution_floors(view: MotionView) -> Floors:
 def coarseness(view: MotionView) -> Array:
     """Return the force that the noise of all encoders makes of each joint's balance, rms over the motion, (k,)."""
     run = view.links
-    noise = [
-        max(noise_of(run.motor[:, j], run.period), joint.encoder_resolution / UNIFORM)
-        for j, joint in enumerate(view.joints)
-    ]
+    noise = [max(noise_of(run.motor[:, j]), joint.encoder_resolution / UNIFORM) for j, joint in enumerate(view.joints)]
     _, bend = white_behind(run)
     rows = np.linspace(0, len(view.position) - 1, min(POSTURES, len(view.position))).astype(int)
     squares = (view.inertia_matrix(rows) * np.array(noise)) ** 2

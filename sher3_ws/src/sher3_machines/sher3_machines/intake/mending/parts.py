@@ -52,7 +52,7 @@ def cut(name: str, tables: Tables, clock: str | None, placed: Mask | None = None
     }
     first = next(iter(parts))
     back = bool((steps[breaks] < 0.0).any())
-    why = "its clock jumps back" if back else "its clock has holes"
+    why = "its clock jumps back" if back else "it has holes"
     note = f"{first}: {name} is cut into {len(spans)} parts, because {why}; {left} samples are in none of them"
     return parts, note
 

@@ -7,10 +7,12 @@ from collections.abc import Mapping, Sequence
 from typing import ClassVar
 from xml.etree.ElementTree import Element, SubElement
 
+from sher3_effects.page import NOISE
+
 from sher3_export.changes import Change
-from sher3_export.targets import mjcf_motor
 from sher3_export.targets.links import INERTIAL, WANTED, WrongLinks
-from sher3_export.targets.mjcf_body import (
+from sher3_export.targets.mjcf import motor
+from sher3_export.targets.mjcf.body import (
     body_around,
     class_value,
     controlled,
@@ -23,8 +25,8 @@ from sher3_export.targets.mjcf_body import (
     skeleton,
     together,
 )
-from sher3_export.targets.mjcf_ranges import write_range
-from sher3_export.targets.mjcf_tendon import at_motor
+from sher3_export.targets.mjcf.numbers import write_noise, write_range
+from sher3_export.targets.mjcf.tendon import at_motor
 from sher3_export.targets.target import NOT_GIVEN, Row, XmlTarget, field
 from sher3_export.xml_file import elements, number, numbers, parents, written
 
@@ -141,8 +143,8 @@ class Mjcf(XmlTarget):
     def _static(self, change: Change, joint: Element) -> str:
         """Friction at rest takes that in motion of the same cause along into its own law."""
         sliding = self._sliding.get((change.joint, change.effect), 0.0)
-        inertia = mjcf_motor.inertia_at(self.root, change.joint) or self._inherited(joint, "armature")
-        if reason := mjcf_motor.at_rest(self.root, change, sliding, self.step, inertia):
+        inertia = motor.inertia_at(self.root, change.joint) or self._inherited(joint, "armature")
+        if reason := motor.at_rest(self.root, change, sliding, self.step, inertia):
             return reason
         return self._add(joint, "frictionloss", -sliding)
 
@@ -283,6 +285,9 @@ class Mjcf(XmlTarget):
         standing.attrib.update(law)
         return ""
 
+    def _noise(self, change: Change, joint: Element) -> str:
+        return write_noise(self.root, change, {x.get("name") for x in self._actuators(change.joint)})
+
     def _second(self, change: Change, joint: Element, what: str, law: Mapping[str, str]) -> str:
         """Part motor from load: a body of the motor's own takes the joint, and the load hangs on it by a second one.
 
@@ -341,7 +346,7 @@ class Mjcf(XmlTarget):
     rows: ClassVar[Mapping[str, Row]] = {
         "coulomb": Row("frictionloss", _coulomb),
         "static": Row("dcmotor without input, lugre", _static),
-        "stribeck": Row("dcmotor without input, lugre", lambda to, change, _: mjcf_motor.falling(to.root, change)),
+        "stribeck": Row("dcmotor without input, lugre", lambda to, change, _: motor.falling(to.root, change)),
         "viscous": Row("damping", lambda to, change, joint: to._add(joint, "damping", change.value)),
         "inertia": Row("armature", lambda to, change, joint: to._add(joint, "armature", change.value)),
         "offset": Row("actuator without control", _offset),
@@ -356,8 +361,8 @@ class Mjcf(XmlTarget):
         "limit": Row("forcerange", _limit),
         "zero": Row("ref", _zero),
         **dict.fromkeys(
-            mjcf_motor.COGGING,
-            Row("dcmotor without input, cogging", lambda to, change, _: mjcf_motor.cogging(to.root, change)),
+            motor.COGGING,
+            Row("dcmotor without input, cogging", lambda to, change, _: motor.cogging(to.root, change)),
         ),
         "backlash": Row("a body of the motor's own and a second joint", _backlash),
         "compliance": Row("a body of the motor's own and a second joint", _compliance),
@@ -368,4 +373,5 @@ class Mjcf(XmlTarget):
         "payload": Row("a body of its own", _payload),
         **dict.fromkeys(("payload_x", "payload_y", "payload_z"), Row("a body of its own", _centre)),
         **dict.fromkeys(("shift_x", "shift_y", "shift_z"), Row("pos of the body", _shift)),
+        **dict.fromkeys(NOISE, Row("numeric, noise of a sensor", _noise)),
     }

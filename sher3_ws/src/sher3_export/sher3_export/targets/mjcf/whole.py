@@ -8,7 +8,7 @@ from typing import Any
 from xml.etree.ElementTree import Element, tostring
 
 from sher3_export.errors import ExportError
-from sher3_export.targets.mjcf_body import class_value
+from sher3_export.targets.mjcf.body import class_value
 from sher3_export.xml_file import numbers, parse_xml, read_xml, written
 
 MACROS = ("replicate", "attach", "composite", "flexcomp")
