@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import math
 import time
 from collections import Counter
 from typing import Any
@@ -53,8 +54,8 @@ def watch(run: Any) -> tuple[Trip | None, dict[str, float]]:
         for axis in checks.joints.axes:
             shares["encoders"] = max(shares["encoders"], abs(axis["gap"]) / axis.limit)
             shares["following"] = max(shares["following"], abs(axis["error"]) / axis["error_limit"])
-        for place in checks.position.axes:
-            shares["position"] = max(shares["position"], abs(place.departure) / place.limit)
+        together = math.hypot(*(place.departure / place.limit for place in checks.position.axes))
+        shares["position"] = max(shares["position"], together)
         checks.demand.sent([round(v / s.velocity) for v, s in zip(command[k].tolist(), SCALES, strict=True)])
     return None, shares
 
