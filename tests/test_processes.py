@@ -21,6 +21,8 @@ from sher3_bringup.settings.run_settings import MOCK_FORCE_PORT
 pytestmark = [pytest.mark.graph, pytest.mark.flaky(reruns=2)]
 PATIENCE = 120.0
 """Longest start: a machine that has never compiled the kernels."""
+RECORDED, A_FEW = 100_000, 20
+"""Bytes of a recording that took place, 0.9 kB a tick beside what describes it; ticks that are in it at least."""
 
 
 class Robot:
@@ -45,14 +47,18 @@ class Robot:
         return psutil.Process(self.process.pid).children(recursive=True)
 
     def work(self, seconds: float) -> None:
-        """Wait until its processes have had that much of the processor, which a busy computer gives them later.
-
-        In half a second eight processes recorded 200 to 220 ticks beside a load of 17, where one second gave 79.
-        """
+        """Wait until its processes have had that much of the processor, which a busy computer gives them later."""
         children = self.children()
         begin, end = _processor_time(children), time.monotonic() + PATIENCE
         while _processor_time(children) < begin + seconds:
             assert time.monotonic() < end, "the robot's processes do not run"
+            time.sleep(0.05)
+
+    def records(self, folder: Path) -> None:
+        """Wait until it has recorded something: beside a load of 23 that took ten times as much of the processor."""
+        end = time.monotonic() + PATIENCE
+        while sum(file.stat().st_size for file in folder.glob("*.mcap")) < RECORDED:
+            assert time.monotonic() < end, "nothing is recorded"
             time.sleep(0.05)
 
     def finish(self) -> tuple[int, str, str]:
@@ -102,14 +108,14 @@ def test_ready_line_then_ctrl_c_stops_everything(robot, bag_folder):
     assert re.match(r"ready: 8 processes at 500 Hz on mocks in \d+\.\d\d s", running.ready())
     children = running.children()
     assert len(children) == 9, "the eight of the robot, and the terminal's listener"
-    running.work(0.6)
+    running.records(bag_folder)
     running.process.send_signal(signal.SIGINT)
     status, out, _ = running.finish()
     assert status == 0
     assert out.strip().endswith(f"stopped; recorded {bag_folder}")
     assert not [child for child in children if child.is_running() and child.status() != psutil.STATUS_ZOMBIE]
     run = read_run(bag_folder, check=False)
-    assert len(run["measured_js"]) > 100 and len(run["force/measured_cf"]) > 100
+    assert len(run["measured_js"]) > A_FEW and len(run["force/measured_cf"]) > A_FEW
 
 
 def test_nodes_can_share_processes_and_the_run_can_end_by_itself(robot):
@@ -169,7 +175,7 @@ def test_the_death_of_the_recorder_stops_the_robot_unless_recording_is_optional(
     running = robot("--record", bag_folder, *([] if required else ["--record-optional"]))
     running.ready()
     recorder = sorted(child.pid for child in running.children())[-2]  # the terminal's listener comes after it
-    running.work(1.0)
+    running.records(bag_folder)
     os.kill(recorder, signal.SIGKILL)
     line = next(line for line in running.process.stderr if line.startswith("sher3: recorder stopped: "))
     if required:
@@ -180,7 +186,7 @@ def test_the_death_of_the_recorder_stops_the_robot_unless_recording_is_optional(
         running.work(0.3)
         running.process.send_signal(signal.SIGINT)
         assert running.finish()[0] == 0
-    assert len(read_run(recover(bag_folder, tmp_path / "recovered").target, check=False)["measured_js"]) > 100
+    assert len(read_run(recover(bag_folder, tmp_path / "recovered").target, check=False)["measured_js"]) > A_FEW
 
 
 @pytest.mark.parametrize(

@@ -8,6 +8,7 @@ import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from functools import partial
+from types import FrameType
 
 from sher3_common.progress import Say, silent
 from sher3_runtime import environment
@@ -52,8 +53,8 @@ def run_graph(
         AlreadyRunning, NoRealtime, StartError, ProcessDied, NotStopped: see `errors`; whatever was running has been
             stopped.
     """
-    begin = time.monotonic()
-    with only_robot(settings.domain), _signals() as caught, Fleet() as fleet:
+    begin, caught = time.monotonic(), list[int]()
+    with only_robot(settings.domain), _signals(lambda number, _: caught.append(number)), Fleet() as fleet:
         realtime = prepare(settings)
         launch_nodes(fleet, settings, realtime)
         for name, make in (extra or {}).items():
@@ -91,13 +92,15 @@ def launch_nodes(fleet: Fleet, settings: RunSettings, realtime: int, patience: f
 
     Raises:
         StartError: the plant's process failed, or did not answer in time.
+        KeyboardInterrupt: SIGINT or SIGTERM came while the nodes were compiled.
     """
     processes = launch_order(settings.processes)
     rings = {process: Ring() for process in processes if len(process) > 1}
     share(rings.values())
     for devices in (True, False):
         group = [process for process in processes if ("plant" in process) is devices]
-        preload(settings, [name for process in group for name in process])
+        with _signals(signal.default_int_handler):  # on a new machine it compiles for a minute
+            preload(settings, [name for process in group for name in process])
         if not devices:
             make_logging_prompt()  # for all processes but the plant's, which does it meanwhile
             fleet.gather("publishes", patience)
@@ -162,12 +165,11 @@ def prepare(settings: RunSettings) -> int:
 
 
 @contextmanager
-def _signals() -> Iterator[list[int]]:
-    """Collect SIGINT and SIGTERM instead of ending at them."""
-    caught: list[int] = []
-    before = {n: signal.signal(n, lambda number, _: caught.append(number)) for n in (signal.SIGINT, signal.SIGTERM)}
+def _signals(handler: Callable[[int, FrameType | None], object]) -> Iterator[None]:
+    """Let SIGINT and SIGTERM do something else than what they do outside."""
+    before = {number: signal.signal(number, handler) for number in (signal.SIGINT, signal.SIGTERM)}
     try:
-        yield caught
+        yield
     finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)
+        for number, outside in before.items():
+            signal.signal(number, outside)
