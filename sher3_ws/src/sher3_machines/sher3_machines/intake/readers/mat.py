@@ -35,8 +35,7 @@ HDF5 = b"MATLAB 7.3"
 
 
 def read_mat(path: Path) -> dict[str, Array]:
-    """Return the numeric arrays of a file as they are; fields of structs are `struct/field`, rows of struct arrays
-    are stacked (rows, ...).
+    """Return the numeric arrays of a file; fields of structs are `struct/field`, struct arrays are stacked (rows, ...).
 
     Raises:
         MachineError: the file is of version 7.3, and no reader of these is installed.
