@@ -10,12 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from sher3_effects.compliance.link_compliance import LinkComplianceInPlant
-from sher3_effects.compliance.structural_compliance import StructuralComplianceInPlant
-from sher3_effects.geometry.link_length_error import LinkLengthErrorInPlant
-from sher3_effects.geometry.platform_geometry_error import PlatformGeometryErrorInPlant
-from sher3_effects.geometry.rail_tilt import RailTiltInPlant
-from sher3_effects.scale.encoder_scale import EncoderScaleInPlant
+from sher3_effects.effects_file import effect_from_dict
 from sher3_sim import PlantEffect
 
 FILE = Path(__file__).parent / "as_built.yaml"
@@ -56,15 +51,19 @@ def as_built(seed: int = 0, tolerances: Tolerances | None = None) -> list[PlantE
         lean = t.rail_lean * rng.standard_normal(2)
         angle, azimuth = float(np.hypot(*lean)), float(np.arctan2(lean[1], lean[0]))
         effects += [
-            LinkLengthErrorInPlant(leg, length=float(length), difference=float(difference)),
-            PlatformGeometryErrorInPlant(leg, x=float(x), y=float(y)),
-            RailTiltInPlant(leg, angle=angle, azimuth=azimuth),
+            _made("link_length_error", leg, length=float(length), difference=float(difference)),
+            _made("platform_geometry_error", leg, x=float(x), y=float(y)),
+            _made("rail_tilt", leg, angle=angle, azimuth=azimuth),
         ]
     for axis in (*SLIDERS, "tilt"):
         relative = t.encoder_scale * float(rng.standard_normal())
-        effects.append(EncoderScaleInPlant(axis, relative=relative))
+        effects.append(_made("encoder_scale", axis, relative=relative))
     return [
         *effects,
-        StructuralComplianceInPlant("tip", fraction=t.structure),
-        LinkComplianceInPlant("all", fraction=t.links),
+        _made("structural_compliance", "tip", fraction=t.structure),
+        _made("link_compliance", "all", fraction=t.links),
     ]
+
+
+def _made(effect: str, actuator: str, **parameters: float) -> PlantEffect:
+    return effect_from_dict({"effect": effect, "actuator": actuator, "parameters": parameters})
