@@ -20,7 +20,7 @@ from sher3_effects.view import NominalAxis
 from sher3_machines.errors import MachineError
 from sher3_machines.thresholds import BLOCKS
 
-from sher3_chain.axes.causes.confounded_laws import dead_band_note, with_dead_band, with_second_pole
+from sher3_chain.axes.causes.confounded_laws import indistinct_notes, with_indistinct, with_second_pole
 from sher3_chain.axes.causes.detection_limits import unseen_note
 from sher3_chain.axes.causes.plan import AXIS
 from sher3_chain.axes.causes.refine import refine_free
@@ -110,7 +110,7 @@ class Axes(Chain[AxisEvidence]):
         causes = within_bounds(causes, attribution.named, self.effects(evidence))
         if free:
             return refine_free(evidence, causes)
-        causes = with_second_pole(with_dead_band(causes)) if servo else in_true_force(causes)
+        causes = with_second_pole(with_indistinct(causes)) if servo else in_true_force(causes)
         return evidence, [in_own_unit(cause, own) for cause in causes] if own else causes
 
     def rehearsals(self, evidence: AxisEvidence) -> Iterator[Rehearsal]:
@@ -288,5 +288,5 @@ def blind_spots(finding: Finding[AxisEvidence]) -> list[str]:
         unread = axis.signals.effort is not None and not finding.evidence.not_judged
         why = "its effort is not looked at (`command_law: {kind: force}` does)" if unread else "force not recorded"
         out.append(f"{axis.name}: {why}: forces are given in units of the servo's stiffness")
-        out.append(dead_band_note(axis.name, finding.causes, axis.unit_of_position))
+        out += indistinct_notes(axis.name, finding.causes, axis.unit_of_position)
     return [said for said in out if said]

@@ -1,4 +1,4 @@
-"""A valve with overlap and a servo that sticks: one equation, so that each is the other's rival."""
+"""A valve with overlap and a servo that sticks, a sag and a zero: one equation each, so that they are rivals."""
 
 import numpy as np
 import pytest
@@ -47,8 +47,8 @@ def test_a_dead_band_is_in_the_set_with_what_would_tell_it_apart(verdict):
     stuck = next(c for c in verdict.causes if c.effect == "coulomb_friction")
     assert "command_deadband" in stuck.rivals
     assert stuck.parameters["force"].value == pytest.approx(BAND, rel=0.1)
-    note = next(n for n in verdict.notes if "dead band" in n)
-    assert "force or pressure tells them apart" in note and "two loads" in note
+    note = next(n for n in verdict.notes if "coulomb friction and command deadband of 0.00" in n)
+    assert "recorded force" in note and "two loads tell them apart: friction grows with the load" in note
 
 
 def test_a_late_servo_has_no_band():
@@ -56,4 +56,16 @@ def test_a_late_servo_has_no_band():
     run = AxesRun("run", PERIOD, {"slide": {"position": read, "reference": ASKED}})
     found = diagnose(servo(encoder_resolution=COUNT), [run]).verdict
     assert {c.effect for c in found.causes} == {"drive_lag"}
-    assert not any("dead band" in n for n in found.notes)
+    assert not any("same readings" in n for n in found.notes)
+
+
+@pytest.mark.parametrize("zero", [0.02, -0.05])
+def test_a_zero_between_reference_and_place_is_in_the_set_of_a_sag(zero):
+    """What is read is off by a constant, or a weight holds the servo there: the same numbers."""
+    read = COUNT * np.round((followed(lambda error: error / LAG) + zero) / COUNT)
+    run = AxesRun("run", PERIOD, {"slide": {"position": read, "reference": ASKED}})
+    found = diagnose(servo(encoder_resolution=COUNT), [run]).verdict
+    sag = next(c for c in found.causes if c.effect == "gravity_load")
+    assert "encoder_offset" in sag.rivals
+    assert sag.parameters["force"].value == pytest.approx(-zero, rel=0.05)
+    assert any("a sag grows with the load, a zero does not" in n for n in found.notes)

@@ -87,7 +87,7 @@ class ServoStiction(CoulombFriction):
     )
     siblings = {
         "drive_lag": "late at every amplitude",
-        "command_deadband": "the same readings under one load; a band stays where friction grows with the load",
+        "command_deadband": "friction grows with the load, a band does not",
     }
     units = {"force": "m", "late": "s", "displacement": "m"}
     SHARES = (0.02, 0.04, 0.07, 0.1, 0.15, 0.2, 0.3, 0.45)

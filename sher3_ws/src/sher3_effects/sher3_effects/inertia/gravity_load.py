@@ -127,8 +127,12 @@ class ServoSag(GravityOnAxis):
 
     kinds = ("servo",)
     needs = ("held",)
+    indistinct = ("encoder_offset",)
     explanation = "The axis rests beside its reference, as a spring does under a weight."
-    siblings = {"coulomb_friction": "the side it rests on changes with the direction it came from"}
+    siblings = {
+        "coulomb_friction": "the side it rests on changes with the direction it came from",
+        "encoder_offset": "a sag grows with the load, a zero does not",
+    }
     units = {"force": "m", "relative": "m/N", "arm": "m", "hanging": "m"}
 
 

@@ -23,7 +23,7 @@ def vocabulary(text: str) -> frozenset[str]:
 POSITION = vocabulary(
     "position positions pos posn q qpos theta phi psi angle angles ang encoder enc lage weg winkel qm x z dist "
     "displacement displ stroke gap hub verschiebung schrittzähler steps schritte thetam posición posicion posição "
-    "posizione ángulo angulo"
+    "posicao posizione ángulo angulo saída saida salida"
 )
 VELOCITY = vocabulary(
     "velocity velocities vel speed qd dq omega qdot qvel gyro drehzahl geschwindigkeit rate dot thetadot xdot "
@@ -32,10 +32,12 @@ VELOCITY = vocabulary(
 EFFORT = vocabulary("effort efforts torque torques tau taus tao force iq trq moment drehmoment strom kraft amps qfrc")
 CURRENT = vocabulary("current currents curr cur i corriente courant corrente")
 """A current is an effort, but the current position is the measured one."""
-COMMAND = vocabulary("control ctrl u input eingang voltage volt voltaje spannung pwm duty vir valve ventil")
+COMMAND = vocabulary(
+    "control ctrl u input eingang voltage volt voltaje spannung pwm duty vir valve ventil esforço esforco"
+)
 ASKED = vocabulary(
     "ref reference set setpoint sp desired des target tgt goal soll demand commanded cmd command action qg d "
-    "planned cmptd computed"
+    "planned cmptd computed referência referencia consigna"
 )
 MEASURED = vocabulary("actual act measured meas present est estimate estimated ist feedback fb")
 SECOND = vocabulary(
@@ -43,8 +45,8 @@ SECOND = vocabulary(
     "laser interferometer vicon mocap optitrack qualisys gt truth groundtruth"
 )
 IGNORED = vocabulary(
-    "acceleration acc accel qdd ddq qddot ddot thetaddot xddot error err bus supply battery versorgung power leistung "
-    "energy tcp pose cartesian ee eef execution main frequency freq frequenz"
+    "acceleration acc accel qdd ddq qddot ddot thetaddot xddot error err erro bus supply battery versorgung power "
+    "leistung energy tcp pose cartesian ee eef execution main frequency freq frequenz"
 )
 """What is no signal of an axis: derivatives, supplies, frequencies, and what the hand of an arm does."""
 TEMPERATURE = vocabulary("temperature temperatures temp temps temperatur")

@@ -89,3 +89,35 @@ def test_of_very_many_parts_the_longest_are_judged():
     parts, note = cut("log", {"t": time}, "t")
     assert len(parts) == MOST and "cut into 50 parts" in note and "1700 samples are in none of them" in note
     assert len(cut("log", {"t": np.repeat(time, 10)[::7] + 10.0 * np.arange(len(time) * 10 // 7 + 1)}, "t")[0]) == 1
+
+
+@pytest.mark.parametrize("end", [1000.0, 60000.0, 65536.0])
+def test_a_clock_that_starts_again_is_counted_on(end):
+    """Milliseconds of a second or of a minute, or 16 bits of them; a command steps as the clock starts again."""
+    time = 4.0 + 2.0 * np.arange(int(1.3 * end))
+    place, command = np.cumsum(np.cos(0.05 * time)), np.sign(np.floor(time / end) - 0.5)
+    parts, note = cut("run", {"t": time % end, "q": place, "u": command}, "t")
+    assert list(parts) == ["run"] and parts["run"]["t"] == pytest.approx(time)
+    assert f"its clock starts again after {end:g}" in note
+
+
+def test_runs_that_start_again_stay_runs_though_each_is_as_long_as_a_clock_counts():
+    time = np.arange(0.0, 10.0, 0.02)
+    answer = 1.0 - np.exp(-time)
+    parts, note = cut("run", {"t": np.tile(time, 3), "q": np.tile(answer, 3)}, "t")
+    assert len(parts) == 3 and "jumps back" in note
+
+
+@pytest.mark.parametrize("rows", [4, 5, 12])
+def test_samples_that_arrive_in_bunches_are_even(rows):
+    """A port hands over several samples at once: each is stamped as it arrives, 0.2 ms after the one before."""
+    sample = np.arange(400)
+    arrived = 0.01 * rows * (sample // rows + 1) + 2e-4 * (sample % rows)
+    jitter = np.repeat(np.random.default_rng(rows).uniform(0.0, 5e-3, 400 // rows + 1), rows)[:400]
+    stamps, kept, note = even_stamps(arrived + jitter, "run")
+    assert len(kept) == 400 and np.diff(stamps) == pytest.approx(0.01, rel=0.03) and "in bunches" in note
+
+
+def test_a_log_with_a_hole_or_pauses_is_no_log_in_bunches():
+    for stamps in (np.concatenate([TIME, 50.0 + TIME]), np.concatenate([TIME[:20] + 5.0 * k for k in range(6)])):
+        assert "bunches" not in even_stamps(stamps, "run")[2]

@@ -1,8 +1,11 @@
-"""What a record of one axis may not tell apart: stiction and a dead band, a spring and a weight at an arm.
+"""What a record of one axis may not tell apart: stiction and a dead band, sag and a zero, a spring and a weight.
 
 A servo whose force c v is stiffness times error less a friction F, and a valve whose flow v is K times the error less a
 band b, obey one equation: v = (error less b) / T beyond the band, none within it, b = F over stiffness. Their readings
 are the same at any speed. The force, the command against its law, or a run under another load tells them.
+
+A servo that rests beside its reference by a constant hangs under a weight, or the place that it is told and the place
+that is read have different zeros.
 
 A spring and the sine of a weight at an arm are the same over a small travel, and each has numbers of its own: neither
 contains the other, as both contain a constant force.
@@ -24,14 +27,11 @@ from sher3_diagnosis.thresholds import NEEDED
 from sher3_diagnosis.verdict import Cause, Parameter
 from sher3_effects import pages
 
+SIZES = ("force", "width")
+"""Parameters of what is one constant in the error of a servo: a force over its stiffness, a gap."""
 SECOND_POLE = 1.0 / 3.0
 """Share of a lag T that a second pole hidden in a dead time has at most: a servo of lag T + s and mass s (T + s) does
 not ring where that mass is below a quarter of its lag's square, so that s is below T / 3."""
-
-
-def indistinct() -> dict[str, tuple[str, ...]]:
-    """Return cause of a position servo -> effects that give it the same readings."""
-    return {e.id: e.indistinct for e in pages("servo") if e.indistinct}
 
 
 def parted_by_travel(evidence: Evidence, found: Attribution) -> Attribution:
@@ -54,12 +54,19 @@ def _close(fits: Sequence[Fit], own: Term, most: float) -> tuple[Fit, ...]:
     return tuple(f for f, e in others if not e.parted_by_travel or e.id == own.effect.id or f.total < most)
 
 
-def with_dead_band(causes: Sequence[Cause]) -> list[Cause]:
-    """Return the causes of a position servo with a dead band among the rivals of its stiction."""
-    beside = indistinct()
+def indistinct(cause: Cause) -> list[tuple[str, str]]:
+    """Return effects that give a servo the same readings as one constant does, each with what tells it apart."""
+    constant = any(name in SIZES for name in cause.parameters)
+    page = next((e for e in pages("servo") if e.id == cause.effect and constant), None)
+    return [(other, page.siblings[other]) for other in page.indistinct] if page is not None else []
+
+
+def with_indistinct(causes: Sequence[Cause]) -> list[Cause]:
+    """Return the causes of a position servo with what gives it the same readings among their rivals."""
+    beside = [[other for other, _ in indistinct(cause)] for cause in causes]
     return [
-        cause.model_copy(update={"rivals": list(dict.fromkeys([*cause.rivals, *beside.get(cause.effect, ())]))})
-        for cause in causes
+        cause.model_copy(update={"rivals": list(dict.fromkeys([*cause.rivals, *others]))})
+        for cause, others in zip(causes, beside, strict=True)
     ]
 
 
@@ -88,14 +95,13 @@ def _wider(p: Parameter, below: float, above: float) -> Parameter:
     return p.model_copy(update={"low": p.value - low, "high": p.value + high})
 
 
-def dead_band_note(name: str, causes: Sequence[Cause], unit: str) -> str:
-    """Return what would tell a stiction from a dead band; empty where no stiction was found."""
-    stuck = next((c.parameters["force"] for c in causes if c.effect in indistinct()), None)
-    if stuck is None:
-        return ""
-    return (
-        f"{name}: friction, and a dead band of {stuck.value:.3g} {unit} either way (overlap of a valve, a zone of the "
-        "controller), give a servo the same readings at any speed; the recorded force or pressure tells them apart, "
-        "the command with its stated law does, and so do runs tagged with two loads: friction grows with the load, a "
-        "band does not"
-    )
+def indistinct_notes(name: str, causes: Sequence[Cause], unit: str) -> list[str]:
+    """Return what would tell causes of a position servo from what gives it the same readings."""
+    return [
+        f"{name}: {cause.effect.replace('_', ' ')} and {other.replace('_', ' ')} of {size.value:.3g} {unit} give a "
+        "servo the same readings; the recorded force, the command with its stated law, and runs tagged with two loads "
+        f"tell them apart: {told}"
+        for cause in causes
+        for other, told in indistinct(cause)
+        for size in [next(p for n, p in cause.parameters.items() if n in SIZES)]
+    ]

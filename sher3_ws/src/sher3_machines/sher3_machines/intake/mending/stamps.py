@@ -1,4 +1,4 @@
-"""Stamps that repeat, come in a wrong order or are rounded, and periods that a clock missed."""
+"""Stamps that repeat, come in a wrong order or in bunches, are rounded or start again, and periods that were missed."""
 
 from __future__ import annotations
 
@@ -16,6 +16,14 @@ FEWEST = 3
 """Stamps below which nothing can be said of them."""
 MIXED_UP = 10.0
 """Periods by which a sample may come too late in a log; what comes later belongs to another record."""
+
+BUNCHED, CLOSE = (0.5, 0.95), 0.1
+"""Shares of the steps, between which samples come in bunches, that are shorter than this share of the mean step: twenty
+samples in a row are a record of their own."""
+ROUNDS = (1.0, 3.6, 6.0, 8.64)
+"""First digits of what clocks count to: powers of ten, an hour, a minute, a day."""
+CLEAR = 0.25
+"""Periods by which a clock that starts again may be late by what it counts to."""
 
 
 def even_stamps(stamps: Array, run: str) -> tuple[Array, NDArray[np.int64], str]:
@@ -67,7 +75,30 @@ def even_stamps(stamps: Array, run: str) -> tuple[Array, NDArray[np.int64], str]
                 limit=f"{2.0 * tick:.3g} s",
                 remedy="record finer stamps, or state the rate of the samples: `time: {rate: HZ}`",
             )
+    elif _in_bunches(found):
+        found = _line(found)
+        notes.append("samples came in bunches: their stamps are those of their arrival; samples are taken as even")
     return found, kept, f"{run}: {', '.join(notes)}" if notes else ""
+
+
+def counted_on(stamps: Array) -> tuple[Array, float]:
+    """Return stamps (n,) of a clock that starts again as of one that goes on, and what it counts to; 0: it does not.
+
+    It counts to a round number, such as the milliseconds of a second, or, in whole numbers, to a power of two, and
+    comes to it within a period.
+    """
+    steps = np.diff(stamps)
+    if not (steps > 0.0).any() or not (steps < 0.0).any():
+        return stamps, 0.0
+    usual = float(np.median(steps[steps > 0.0]))
+    ends = usual - steps[steps < 0.0]
+    digit = 10.0 ** np.floor(np.log10(ends[0]))
+    round_ones = [digit * r * k for r in ROUNDS for k in (1.0, 10.0)]
+    round_ones += [2.0 ** np.round(np.log2(ends[0]))] if (stamps == np.round(stamps)).all() else []
+    end = float(min(round_ones, key=lambda x: abs(x - ends[0])))
+    if np.abs(ends - end).max() > CLEAR * usual or not 0.0 <= stamps.min() <= stamps.max() < end:
+        return stamps, 0.0
+    return stamps + end * np.cumsum(np.concatenate([[0.0], steps < 0.0])), end
 
 
 def missed_periods(stamps: Array) -> NDArray[np.int64]:
@@ -95,6 +126,13 @@ def missing_note(missed: NDArray[np.int64], period: float, run: str) -> str:
         f"{run}: the clock missed {int(missed.sum())} periods of {1e3 * period:.4g} ms at {len(missed)} places, "
         f"{longest} ({1e3 * longest * period:.4g} ms) at most; interpolated"
     )
+
+
+def _in_bunches(stamps: Array) -> bool:
+    """Return whether stamps (n,) are those of an arrival: several close together, no further off a line than waits."""
+    steps = np.diff(stamps)
+    close = float(np.mean(steps < CLOSE * steps.mean()))
+    return BUNCHED[0] < close < BUNCHED[1] and float(np.abs(_line(stamps) - stamps).max()) <= float(steps.max())
 
 
 def _line(stamps: Array) -> Array:
