@@ -42,6 +42,17 @@ def reached(seed: int, first: Drawn, asked: NextExperiment) -> tuple[float, floa
     return max((shares[e] for e in asked.separates if e in first.truth), default=0.0), max(shares.values())
 
 
+def shares(name: str, some: list[tuple[float, float, float]]) -> None:
+    """Print the shares that were settled: odds as expected and as reached of what is at work, and of the likeliest."""
+    if some:
+        right = sum(true >= SETTLED for _, true, _ in some)
+        wrong = sum(likely >= SETTLED > true for _, true, likely in some)
+        low, high = wilson(right / len(some), len(some))
+        print(f"{name}: settled and right {right} of {len(some)} [{low:.2f}, {high:.2f}], settled and wrong {wrong}")
+        expected, after, _ = np.mean(some, axis=0)
+        print(f"  mean odds of what is at work: {expected:.2f} expected, {after:.2f} reached")
+
+
 def main() -> None:
     """Print a line for each open axis, and the shares."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -61,16 +72,7 @@ def main() -> None:
         )
         found += [(asked.added == WEIGHED, asked.expected_odds, *told)]
     for weighed, name in ((True, "a known mass"), (False, "another speed")):
-        some = [x[1:] for x in found if x[0] == weighed]
-        if some:
-            right = sum(true >= SETTLED for _, true, _ in some)
-            wrong = sum(likely >= SETTLED > true for _, true, likely in some)
-            low, high = wilson(right / len(some), len(some))
-            print(
-                f"{name}: settled and right {right} of {len(some)} [{low:.2f}, {high:.2f}], settled and wrong {wrong}"
-            )
-            expected, after, _ = np.mean(some, axis=0)
-            print(f"  mean odds of what is at work: {expected:.2f} expected, {after:.2f} reached")
+        shares(name, [x[1:] for x in found if x[0] == weighed])
 
 
 if __name__ == "__main__":

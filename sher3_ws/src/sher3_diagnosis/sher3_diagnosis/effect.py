@@ -266,10 +266,6 @@ class Effect:
         """
         return None
 
-    def unlikely(self, shape: Shape, coefficients: Array) -> bool:
-        """Return whether coefficients (p,), though possible, are rather those of another effect; default never."""
-        return False
-
     def stage_at(self, channel: Channel) -> str:
         """Return the stage a cause is booked under when it shows in `channel`; default the page's."""
         return self.stage

@@ -60,10 +60,6 @@ PRICE = 12.0
 """Held-out loss that each coefficient or shape parameter must buy: four standard deviations of a chi-square with
 eight repeats' worth of searching. Set on: development seeds. Measure: `sher3 gap challenge --seeds 0:40`."""
 
-UNLIKELY = 3.0 * PRICE
-"""Loss that an effect must buy in addition where the sign of its parameters speaks for another effect.
-Set on and measured as `PRICE`."""
-
 NEEDED = 3.0 * PRICE
 """Loss that a cause, or the more general of two related effects, must be worth for each of its numbers in order to
 stay. Set on and measured as `PRICE`."""

@@ -9,7 +9,6 @@ from functools import partial
 import numpy as np
 from sher3_diagnosis.channel import Array, Channel, Mask, Residual, Residuals
 from sher3_machines.errors import MachineError
-from sher3_machines.intake.mending.parts import whole
 from sher3_machines.thresholds import BLOCKS
 
 from sher3_chain.axes.floors import floors_of
@@ -21,6 +20,7 @@ from sher3_chain.axes.stops import with_stops
 from sher3_chain.axes.view import AxisView
 from sher3_chain.chain.evidence import ChainEvidence, in_blocks
 from sher3_chain.constants import ZERO, constants
+from sher3_chain.joint.conditions import carried_in
 from sher3_chain.joint.description import Axis
 from sher3_chain.joint.own_unit import renamed
 from sher3_chain.joint.record import AxesRun
@@ -112,8 +112,8 @@ def _gathered(runs: Sequence[AxesRun], axis: Axis, repeats: bool) -> AxisEvidenc
                 notes = [*notes, f"{axis.name}: {text}"]
             else:
                 not_judged = str(error)
-    carried = carried_by(axis, [s.name for s in signals])
-    records = [AxisView(s, axis, mass + m, load_mass) for s, m in zip(signals, carried, strict=True)]
+    carried = carried_in(axis.carried, [s.name for s in signals])
+    records = [AxisView(s, axis, mass + (m or 0.0), load_mass) for s, m in zip(signals, carried, strict=True)]
     found = [_judged(residuals_of(view), not_judged) for view in records]
     floors = floors_of(records, found, repeats)
     data = in_blocks(records, found, floors)
@@ -132,16 +132,6 @@ def _gathered(runs: Sequence[AxesRun], axis: Axis, repeats: bool) -> AxisEvidenc
         not_judged=not_judged,
         notes=notes,
     )
-
-
-def carried_by(axis: Axis, runs: Sequence[str]) -> list[float]:
-    """Return the known mass on the axis in each run, kg or kg m^2; raises MachineError where a run is none of these."""
-    unknown = sorted(axis.carried.keys() - {whole(run) for run in runs})
-    if unknown:
-        raise MachineError(
-            f"axis {axis.name}: `carried` names no run", value=unknown[0], limit=runs, remedy="name runs as their files"
-        )
-    return [axis.carried.get(whole(run), 0.0) for run in runs]
 
 
 def with_zeros(axis: Axis) -> list[Channel]:

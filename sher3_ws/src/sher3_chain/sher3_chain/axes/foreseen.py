@@ -5,14 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 
-import numpy as np
-from sher3_diagnosis.channel import Floors
 from sher3_diagnosis.fit.standardised import Standardised
 from sher3_diagnosis.machine import Rehearsal
 
 from sher3_chain.axes.evidence import AxisEvidence, residuals_of
 from sher3_chain.axes.view import AxisView
-from sher3_chain.chain.evidence import in_blocks
 from sher3_chain.readings.signals import signals_of
 
 SPEEDS = {
@@ -37,14 +34,8 @@ def foreseen(evidence: AxisEvidence) -> Iterator[Rehearsal]:
 
 
 def _runs(evidence: AxisEvidence, name: str, speed: float, carried: float) -> Standardised:
-    axis, floor = evidence.axis, _floors(evidence)
+    axis = evidence.axis
     runs = [replace(run, period=run.period / speed) for run in evidence.runs]
     views = zip(runs, evidence.records, strict=True)
     records = [AxisView(signals_of(r, axis, name), axis, v.mass + carried, v.load_mass) for r, v in views]
-    found = [{c: x for c, x in residuals_of(view).items() if c in floor} for view in records]
-    return in_blocks(records, found, [floor] * len(records))
-
-
-def _floors(evidence: AxisEvidence) -> Floors:
-    """Return the floor of every channel, (d,): the median over the records."""
-    return {c: np.median([f[c] for f in evidence.floors if c in f], axis=0) for c in evidence.channels}
+    return evidence.foreseen(records, [residuals_of(view) for view in records])

@@ -36,6 +36,17 @@ class ChainEvidence(Evidence):
         """Return the record that a block belongs to."""
         return self.records.index(self.data.views[block])
 
+    def foreseen(self, views: Sequence[Any], residuals: Sequence[Residuals]) -> Standardised:
+        """Return runs that were never made, in blocks, with the floor of every channel: its median over the records.
+
+        Args:
+            views: of the runs, one for each record.
+            residuals: of each, of which the samples that count are looked at.
+        """
+        floor = {c: np.median([f[c] for f in self.floors if c in f], axis=0) for c in self.channels}
+        found = [{c: x for c, x in seen.items() if c in floor} for seen in residuals]
+        return in_blocks(views, found, [floor] * len(views))
+
 
 def in_blocks(records: Sequence[Any], found: Sequence[Residuals], floors: Sequence[Floors]) -> Standardised:
     """Return the residuals of all records cut into about eight blocks in all.

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Annotated, NamedTuple
+from typing import Annotated, NamedTuple, TypeVar
 
 from pydantic import Field
 from sher3_machines.errors import MachineError
 from sher3_machines.intake.fields import Description
 from sher3_machines.intake.mending.parts import whole
 
+T = TypeVar("T")
 Tag = Annotated[str, Field(min_length=1, max_length=40)]
 """What may differ between runs: payload, posture, temperature, day, controller, gain, or any other word."""
 Conditions = Mapping[str, Mapping[Tag, str | float]]
@@ -42,6 +43,14 @@ class Condition(NamedTuple):
 
     def __str__(self) -> str:
         return f"{self.tag} {self.value}"
+
+
+def carried_in(stated: Mapping[str, T], runs: Sequence[str]) -> list[T | None]:
+    """Return what was put on in each run; None: nothing. Raises MachineError where a stated run was not imported."""
+    unknown = sorted(stated.keys() - {whole(run) for run in runs})
+    if unknown:
+        raise MachineError("`carried` names no run", value=unknown[0], limit=runs, remedy="name runs as their files")
+    return [stated.get(whole(run)) for run in runs]
 
 
 def conditions_of(stated: Conditions, runs: Sequence[str]) -> list[Condition]:

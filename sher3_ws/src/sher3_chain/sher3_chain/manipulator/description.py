@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from typing import Literal
 
 from pydantic import Field, model_validator
+from sher3_machines.intake.fields import Strict
 
 from sher3_chain.joint.description import Axis, ChainDescription, CommandLaw
 from sher3_chain.joint.own_unit import RECORDED
@@ -64,6 +65,20 @@ class Joint(Axis):
         return self
 
 
+class Carried(Strict):
+    """A known mass that was put on a link.
+
+    Attributes:
+        mass: kg, of a body that is small beside its distance from the joints.
+        link: that carries it, by the name of the model.
+        centre: of it in the frame of the link's joint, m.
+    """
+
+    mass: float = Field(gt=0.0)
+    link: str
+    centre: tuple[float, float, float]
+
+
 BEHIND = "behind `coupling`: "
 """How the note of a verdict begins whose causes sit on motors that move several joints."""
 
@@ -80,6 +95,7 @@ class ManipulatorDescription(ChainDescription):
         effort_of: whether the efforts are those of the joints or of the motors behind the coupling.
         position_of: whether the positions are those of the joints or of the motors behind the coupling.
         gravity: at the base of the model, m/s^2; None: that of the model.
+        carried: file name of a run, without its ending -> known mass that was put on the arm in it.
     """
 
     kind: Literal["manipulator"]
@@ -90,12 +106,15 @@ class ManipulatorDescription(ChainDescription):
     effort_of: Literal["joints", "motors"] = "joints"
     position_of: Literal["joints", "motors"] = "joints"
     gravity: tuple[float, float, float] | None = None
+    carried: Mapping[str, Carried] = Field(default_factory=dict)
 
     @model_validator(mode="after")
     def _consistent(self) -> ManipulatorDescription:
         names, n = [j.name for j in self.joints], len(self.joints)
         if len(set(names)) < n:
             raise ValueError(f"joint names repeat: {', '.join(names)}")
+        if self.carried and self.inertias == "identified":
+            raise ValueError("what the arm carried is told beside `inertias: nominal` alone")
         if self.coupling is not None and [len(row) for row in self.coupling] != [n] * n:
             raise ValueError(f"coupling: a matrix of {n} rows and {n} columns is needed, one for each joint")
         return self

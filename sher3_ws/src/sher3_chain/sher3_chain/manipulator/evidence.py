@@ -15,7 +15,7 @@ from sher3_machines.thresholds import BLOCKS
 
 from sher3_chain.chain.evidence import ChainEvidence, in_blocks
 from sher3_chain.constants import ZERO, constants
-from sher3_chain.joint.conditions import conditions_of, reference_runs
+from sher3_chain.joint.conditions import carried_in, conditions_of, reference_runs
 from sher3_chain.joint.own_unit import RECORDED, renamed
 from sher3_chain.joint.record import AxesRun
 from sher3_chain.manipulator.description import PER_RUN, Joint, ManipulatorDescription
@@ -101,12 +101,15 @@ def gather_arm_motion(
     repeats = described.repeats and len(runs) > 1
     n = len(described.joints)
     coupling = np.asarray(described.coupling if described.coupling is not None else np.eye(n), dtype=float)
+    carried = carried_in(described.carried, [run.name for run in runs])
     read = [without_wrong_loads(run, described) for run in runs]
     signals = [joint_signals(run, described, "repeats" if repeats else run.name) for run in read]
     links = [links_of(s, described.joints, model, coupling) for s in signals]
 
     def seen_by(model: ArmModel, shares: Array, joints: Sequence[Joint] = described.joints) -> list[MotionView]:
-        return [MotionView(s, link, joints, model, coupling, shares) for s, link in zip(signals, links, strict=True)]
+        models = [model.carrying(x) for x in carried]
+        each = zip(signals, links, models, strict=True)
+        return [MotionView(s, link, joints, own, coupling, shares) for s, link, own in each]
 
     plain = seen_by(model, np.ones(n))
     gravity = mounted(plain, described, model, judged)
@@ -142,7 +145,7 @@ def gather_arm_motion(
     factors = np.array([modelled[j.name].value if j.name in modelled else 1.0 for j in described.joints])
     nominal = (model, factors) if inertias is None else (inertias.model(model), factors, inertias.at(described.joints))
     views = plain if inertias is None and not shares else seen_by(*nominal)
-    residuals = [_residuals(view, judged) for view in views]
+    residuals = [residuals_of(view, judged) for view in views]
     if not any(residuals):
         raise not_judged(judged, signals, slips)
     floors = floors_of(views, residuals, repeats)
@@ -257,7 +260,8 @@ def of_channel(
     )
 
 
-def _residuals(view: MotionView, judged: Sequence[str]) -> Residuals:
+def residuals_of(view: MotionView, judged: Sequence[str]) -> Residuals:
+    """Return the force balance of each judged joint, and the difference of its two encoders."""
     run, out = view.run, Residuals()
     left = view.effort - view.inertial
     for joint in judged:

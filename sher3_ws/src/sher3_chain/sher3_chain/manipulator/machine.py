@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -17,7 +17,7 @@ from sher3_diagnosis.effect import Effect
 from sher3_diagnosis.finding import ExactFinding, Finding
 from sher3_diagnosis.fit.fitting import Fit
 from sher3_diagnosis.localise.gaps import localise
-from sher3_diagnosis.machine import Policy
+from sher3_diagnosis.machine import Policy, Rehearsal
 from sher3_diagnosis.report.summary import UNJUDGED
 from sher3_diagnosis.verdict import Cause, Identified
 from sher3_effects import computed, pages
@@ -43,6 +43,7 @@ from sher3_chain.manipulator.causes.plan import JOINT
 from sher3_chain.manipulator.causes.search import causes_of_arm
 from sher3_chain.manipulator.description import BEHIND, ManipulatorDescription
 from sher3_chain.manipulator.evidence import ArmMotionEvidence, gather_arm_motion
+from sher3_chain.manipulator.foreseen import foreseen
 from sher3_chain.manipulator.library import of_joints
 from sher3_chain.manipulator.model import ArmModel
 from sher3_chain.manipulator.readings.wrong import level_notes
@@ -195,6 +196,11 @@ class Manipulator(Chain[ArmMotionEvidence]):
         """Say where the floors of all joints eat their efforts."""
         views = finding.evidence.data.views
         return unjudged(finding, lambda r, site, ok: views[r].effort[ok, views[r].row(site)])
+
+    def rehearsals(self, evidence: ArmMotionEvidence) -> Iterator[Rehearsal]:
+        """Yield the recorded motion with a known mass on the last link, where the inertias are those of the model."""
+        if not self._in_inertias:
+            yield from foreseen(evidence)
 
     def reporter(self) -> ManipulatorReporter:
         """Return the part of this machine in a report."""

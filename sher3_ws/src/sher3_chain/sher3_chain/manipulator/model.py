@@ -14,6 +14,7 @@ from sher3_diagnosis.channel import Array
 from sher3_machines.errors import MachineError
 
 from sher3_chain.manipulator.bodies import Bodies
+from sher3_chain.manipulator.description import Carried
 from sher3_chain.manipulator.mjcf.losses import Losses
 from sher3_chain.manipulator.rigid import dynamics
 from sher3_chain.manipulator.rigid.gears import Geared, geared
@@ -33,12 +34,14 @@ class ArmModel:
         tree: of the joints that move.
         names: of the k recorded joints, in the order of the description.
         parameters: inertial ones of all links in place of the model's, (10 links,); None: those of the model.
+        carried: inertial ones of known masses on the links, (10 links,), which are nobody's error; None: nothing.
         losses: what an MJCF model says beside its bodies; None: nothing.
     """
 
     tree: Tree
     names: tuple[str, ...]
     parameters: Array | None = None
+    carried: Array | None = None
     losses: Losses | None = None
 
     @cached_property
@@ -55,6 +58,23 @@ class ArmModel:
     def links(self) -> tuple[str, ...]:
         """Name of the first link that each joint moves, in the order of the joints of the model."""
         return tuple(link.body or link.name for link in self.tree.links)
+
+    def carrying(self, known: Carried | None) -> ArmModel:
+        """Return the arm with a known mass on a link; raises MachineError where no link that moves is called so."""
+        if known is None:
+            return self
+        if known.link not in self.links:
+            limit, remedy = ", ".join(self.links), "name a link of the model that moves"
+            raise MachineError("`carried` names no link", value=known.link, limit=limit, remedy=remedy)
+        found = np.zeros(self.inertial.size) if self.carried is None else self.carried.copy()
+        centre = np.array(known.centre)
+        found[self.of(known.link)] += known.mass * np.concatenate([[1.0], centre, point_inertia(centre)])
+        return replace(self, carried=found)
+
+    def of(self, link: str) -> slice:
+        """Return where the inertial parameters of a link are."""
+        first = PARAMETERS * self.links.index(link)
+        return slice(first, first + PARAMETERS)
 
     @cached_property
     def linear(self) -> tuple[bool, ...]:
@@ -83,7 +103,7 @@ class ArmModel:
 
     def mass_of(self, link: str) -> float:
         """Return the mass of a link, kg, as the model has it."""
-        return float(self.inertial[PARAMETERS * self.links.index(link)])
+        return float(self.inertial[self.of(link)][0])
 
     @property
     def mass(self) -> float:
@@ -117,6 +137,7 @@ class ArmModel:
 
     def _rigid(self, q: Array, v: Array, a: Array) -> Array:
         own = self.inertial if self.parameters is None else self.parameters
+        own = own if self.carried is None else own + self.carried
         return self._felt(dynamics.forces(self.tree, own, *self._full(q, v, a))) + self.rotors * a
 
     @cached_property
@@ -168,3 +189,12 @@ def arm_model(
         raise MachineError(f"{path}: states no masses", value="0 kg", remedy="give a model with inertias")
     losses = None if source is None else Losses(source, geared(reduced, names), stated)
     return ArmModel(reduced, tuple(names), losses=losses)
+
+
+def point_inertia(centre: Array) -> Array:
+    """Return the inertia of a kilogram at `centre` (3,), m, about the origin: xx xy yy xz yz zz, (6,), as Pinocchio's.
+
+    I = |c|^2 1 - c c^T.
+    """
+    x, y, z = centre
+    return np.array([y * y + z * z, -x * y, x * x + z * z, -x * z, -y * z, x * x + y * y])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
@@ -15,7 +16,7 @@ from sher3_effects.view import NominalAxis
 from sher3_chain.chain.view import AROUND_STOP, LEAD_OF_STROKE, SLIP, ChainView, Loads
 from sher3_chain.manipulator.description import Joint
 from sher3_chain.manipulator.encoders import crossing
-from sher3_chain.manipulator.model import PARAMETERS, ROUNDED, ArmModel
+from sher3_chain.manipulator.model import PARAMETERS, ROUNDED, ArmModel, point_inertia
 from sher3_chain.manipulator.signals import JointSignals
 from sher3_chain.readings.level import at_a_level, off
 from sher3_chain.readings.orders import orders_in
@@ -107,13 +108,13 @@ class MotionView(ChainView):
 
     def link(self, link: str) -> dict[str, Array]:
         """Return joint -> (g,) force that a link, as its model has it, needs of every joint."""
-        own = self._parameters_of(link)
+        own = self.model.of(link)
         need = self._of_joints(self.regressor_of_joints[..., own] @ self.model.inertial[own, None])
         return {joint: force[:, 0] for joint, force in need.items()}
 
     def per_inertial(self, link: str) -> dict[str, Array]:
         """Return joint -> (g, 10) force per inertial parameter of a link."""
-        return self._of_joints(self.regressor_of_joints[..., self._parameters_of(link)])
+        return self._of_joints(self.regressor_of_joints[..., self.model.of(link)])
 
     def orders(self, joint: str, count: int) -> list[float]:
         """Return the periods per turn that stand out in what the model leaves of a joint's effort, the strongest first.
@@ -132,13 +133,8 @@ class MotionView(ChainView):
     def _columns_of(self, link: str) -> Array:
         """Return the force per inertial parameter of a link on every joint, (g, k, 10), side by side in memory."""
         if link not in self._columns:
-            self._columns[link] = np.ascontiguousarray(self.regressor_of_joints[..., self._parameters_of(link)])
+            self._columns[link] = np.ascontiguousarray(self.regressor_of_joints[..., self.model.of(link)])
         return self._columns[link]
-
-    def _parameters_of(self, link: str) -> slice:
-        """Return where the inertial parameters of a link are."""
-        first = PARAMETERS * self.model.links.index(link)
-        return slice(first, first + PARAMETERS)
 
     def _of_joints(self, forces: Array) -> dict[str, Array]:
         """Return joint -> (g, p) of forces on the joints (g, k, p), as the motors feel them; those that feel any."""
@@ -148,9 +144,12 @@ class MotionView(ChainView):
 
     @cached_property
     def path(self) -> Loads:
-        """Weight on every joint along the motion, (g, k); no contact."""
-        weight = self._on_motors(self.model.weight(self._joint_position)[..., None])[..., 0] * self.shares
-        return Loads(weight, np.zeros_like(weight))
+        """Weight of the arm itself on every joint along the motion, (g, k); that of a known mass acts from outside."""
+        own = self._weight_of(replace(self.model, carried=None))
+        return Loads(own, own - (own if self.model.carried is None else self._weight_of(self.model)))
+
+    def _weight_of(self, model: ArmModel) -> Array:
+        return self._on_motors(model.weight(self._joint_position)[..., None])[..., 0] * self.shares
 
     @cached_property
     def effort(self) -> Array:
@@ -307,12 +306,3 @@ class MotionView(ChainView):
             "load": Quantity(weight, newton, "the weight on the joint", "force"),
             "time": Quantity(run.stage_clock, "s", "the time since the run began", "clock"),
         }
-
-
-def point_inertia(centre: Array) -> Array:
-    """Return the inertia of a kilogram at `centre` (3,), m, about the origin: xx xy yy xz yz zz, (6,), as Pinocchio's.
-
-    I = |c|^2 1 - c c^T.
-    """
-    x, y, z = centre
-    return np.array([y * y + z * z, -x * y, x * x + z * z, -x * z, -y * z, x * x + y * y])

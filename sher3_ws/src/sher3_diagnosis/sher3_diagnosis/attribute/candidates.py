@@ -10,7 +10,7 @@ from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.effect import Effect, Shape
 from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.fit.fitting import Fit, Term, fit, make_term
-from sher3_diagnosis.thresholds import NEEDED, PARSIMONY, PRICE, UNLIKELY
+from sher3_diagnosis.thresholds import NEEDED, PARSIMONY, PRICE
 
 ROUNDS = 3
 """Rounds of the search over shapes: the effect's own, then twice around the best so far."""
@@ -148,12 +148,7 @@ def inputs_of(trial: Fit) -> int:
 
 def cost(trial: Fit) -> float:
     """Return the held-out loss plus the price of the last term's numbers."""
-    if not trial.terms:
-        return trial.total
-    last = len(trial.terms) - 1
-    term = trial.terms[last]
-    doubt = UNLIKELY if term.effect.unlikely(term.shape, trial.of(last)) else 0.0
-    return trial.total + price(term) + doubt
+    return trial.total + (price(trial.terms[-1]) if trial.terms else 0.0)
 
 
 def price(term: Term) -> float:

@@ -18,14 +18,10 @@ def left_over(gaps: Collection[Channel], evidence: Evidence, current: Fit) -> di
     A known cause may leave a share of its gap, and less of it where its law is one that machines follow closely.
     """
     out: dict[Channel, float] = {}
-    for channel in gaps:
-        gap = gap_of(evidence, channel, residual_after(evidence, current, channel))
-        if gap is None or not gap.significant:
-            continue
-        now, null = evidence.excess(channel, current), evidence.excess(channel)
-        small = now < SMALL_REMAINDER * evidence.samples(channel)
+    for channel, now in down_to_floor(gaps, evidence, current).items():
+        null, small = evidence.excess(channel), now < SMALL_REMAINDER * evidence.samples(channel)
         if null <= 0.0 or now > (SMALL_SHARE if small else _share(channel, evidence, current)) * null:
-            out[channel] = max(now, 1.0)
+            out[channel] = now
     return out
 
 

@@ -62,9 +62,9 @@ class PayloadMass(Page):
         limit = robot.tolerances.mass * robot.actuators[ACTUATORS.index(site)].mass
         return (Tolerated({"weight": 0.0}, {f"mass of {site}": (limit, self.unit("mass", site, site == "roll"))}),)
 
-    def unlikely(self, shape: Shape, coefficients: Array) -> bool:
-        """A payload adds mass; where some is missing it is the weight that is off."""
-        return bool(coefficients[0] < 0.0)
+    def admissible(self, shape: Shape, coefficients: Array) -> bool:
+        """A payload adds mass: where weight is missing, it is the weight that is off; an axis alone may be lighter."""
+        return not shape["weight"] or bool(coefficients[0] > 0.0)
 
 
 class MassOnAxis(PayloadMass):
@@ -93,10 +93,6 @@ class MassOnAxis(PayloadMass):
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
         """Return whether a mass is left: none is below zero."""
         return bool(shape["stated"] + coefficients[0] > 0.0)
-
-    def unlikely(self, shape: Shape, coefficients: Array) -> bool:
-        """Return False: a description may state a mass that is too large as well as too small."""
-        return False
 
 
 class PayloadOnLink(PayloadMass):
@@ -143,10 +139,6 @@ class PayloadOnLink(PayloadMass):
         """Return whether mass is added, near the link that carries it."""
         mass = float(coefficients[0])
         return mass > 0.0 and bool(np.linalg.norm(coefficients[1:]) < self.FURTHEST * mass)
-
-    def unlikely(self, shape: Shape, coefficients: Array) -> bool:
-        """Return False: a mass below zero is not admissible at all."""
-        return False
 
 
 @dataclass(frozen=True)

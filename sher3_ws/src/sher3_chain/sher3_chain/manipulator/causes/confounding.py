@@ -21,7 +21,7 @@ from sher3_chain.thresholds import CONFOUNDED, TAKES_PART
 
 WEIGH = (
     "a known weight does: put one on the last link, or on the axis, record the same motion without and with it, and "
-    "tag the runs by `payload`"
+    "state it under `carried`, or tag the runs by `payload` where no mass is stated"
 )
 FEEL = "the force does: record the motor's current, or a sensor's reading, with the same motion, as `effort`"
 """What tells causes apart that no motion does."""

@@ -50,9 +50,8 @@ class CauseEvidence:
         left: share left on held-out runs.
         part: that gap over the gap without any cause, at most 1.
         stray: share left that is not in proportion to what the cause adds; a bent law leaves one that is.
-        law: share left once its law is a free function of the inputs that the effect's page states. Like the next two
+        law: share left once its law is a free function of the inputs that the effect's page states. Like the next one
             None on a machine whose views do not tell them.
-        place: of all quantities of its place.
         anything: of whatever was recorded anywhere, and its past.
         spread: relative gain from fitting each excitation separately.
         mismatch: between the regimes where the cause says the gap is and where it is: 0 to 1.
@@ -66,7 +65,6 @@ class CauseEvidence:
     part: float
     stray: float
     law: float | None
-    place: float | None
     anything: float | None
     spread: float | None
     mismatch: float
@@ -97,10 +95,8 @@ def cause_evidence(evidence: Evidence, attribution: Attribution, index: int) -> 
     remainder = remains(evidence, fitted, index, channel)
     left, own = excess_of(evidence, channel, remainder), added(fitted, index, channel, remainder)
     has_inputs = all(isinstance(evidence.views[r], Felt) for r in remainder)
-    taken = (
-        free_laws(evidence, channel, inputs_of(attribution, channel), remainder) if has_inputs else (None, None, None)
-    )
-    law, place, anything = (None if x is None else (left - x * samples) / gap for x in taken)
+    taken = free_laws(evidence, channel, inputs_of(attribution, channel), remainder) if has_inputs else (None, None)
+    law, anything = (None if x is None else (left - x * samples) / gap for x in taken)
     steady = constancy_of(evidence, found, index)
     before = residual_after(evidence, without, channel)
     whole = gap_of(evidence, channel, before)
@@ -110,7 +106,6 @@ def cause_evidence(evidence: Evidence, attribution: Attribution, index: int) -> 
         part=min(1.0, gap / max(evidence.excess(channel), gap)),
         stray=left / gap * stray_share(standardised(evidence, channel, remainder), own),
         law=law,
-        place=place,
         anything=anything,
         spread=steady.spread if steady.comparable else None,
         mismatch=1.0 - pattern_of(evidence, found, index).agreement,
@@ -147,18 +142,18 @@ def _effects_on(attribution: Attribution, channel: Channel) -> list[Effect]:
 
 def free_laws(
     evidence: Evidence, channel: Channel, inputs: Collection[str], left: Mapping[int, Array]
-) -> tuple[float, float, float]:
+) -> tuple[float, float]:
     """Return the mean square over the floor, per sample and component, that free laws take off what causes leave.
 
-    Of the inputs that their laws depend on; of all quantities of the place; of everything recorded. `left` is (N, d)
-    for each run, in the channel's unit.
+    Of the inputs that their laws depend on, and of everything recorded, after all quantities of the place. `left` is
+    (N, d) for each run, in the channel's unit.
     """
     white = {r: x / evidence.floors[r][channel] for r, x in left.items()}
     signal = np.concatenate(list(white.values()))
     width = signal.shape[1]
     level = float(np.mean(signal**2))
     if level < AT_FLOOR:
-        return 0.0, 0.0, 0.0
+        return 0.0, 0.0
     step = max(1, len(signal) // ROWS)
     picked = {r: np.flatnonzero(evidence.data.residuals[r][channel].ok)[::step] for r in left}
     signal = np.concatenate([white[r][::step] for r in left])
@@ -173,10 +168,9 @@ def free_laws(
         own.append(_stacked(known, known.keys() - others, rows))
         place.append(_stacked(known, others - ELSEWHERE, rows))
         rest.append(whole[key][rows] if key in whole else _stacked(known, others, rows))
-    losses = loss_left([np.vstack(own), np.vstack(place), np.vstack(rest)], signal, run)
     before = float(np.sum(signal**2)) / len(signal)
-    law, of_place, anything = ((before - x) / width for x in losses)
-    return law, of_place, anything
+    law, *_, anything = loss_left([np.vstack(own), np.vstack(place), np.vstack(rest)], signal, run)
+    return (before - law) / width, (before - anything) / width
 
 
 ELSEWHERE = frozenset({"time", "temperature", "posture"})

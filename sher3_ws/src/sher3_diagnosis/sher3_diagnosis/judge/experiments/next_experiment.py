@@ -18,9 +18,7 @@ from sher3_diagnosis.machine import Machine, Rehearsal
 from sher3_diagnosis.verdict import NextExperiment
 
 SETTLED = 0.95
-"""Share of the library's probability that one effect has once its rivals are told apart."""
-OPEN = 0.9
-"""The same share below which the odds of a cause are open."""
+"""Share of the library's probability that one effect has once its rivals are told apart; below it its odds are open."""
 
 
 def next_experiment(machine: Machine, finding: Finding) -> NextExperiment | None:
@@ -71,4 +69,4 @@ def best_of(machine: Machine, finding: Finding, judged: Judged) -> tuple[Rehears
 
 def _open(j: Judged) -> bool:
     """Whether it is a cause of which no candidate has the odds of the library for itself."""
-    return j.item.index is not None and max(j.effects) < OPEN * j.library
+    return j.item.index is not None and max(j.effects) < SETTLED * j.library

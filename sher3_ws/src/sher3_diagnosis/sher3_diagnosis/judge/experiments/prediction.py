@@ -23,7 +23,7 @@ from sher3_diagnosis.judge.probabilities import judged
 
 LABELLED = LEVELS[:4]
 """Shares of a law's power by which it may be bent: the levels that labelled robots were drawn with."""
-OF_TODAY = ("law", "place", "anything")
+OF_TODAY = ("law", "anything")
 """Evidence that further runs would change in a way that a drawn bend does not tell."""
 
 
