@@ -67,7 +67,10 @@ def case_of_tables(model: object, tables: Sequence[Tables], rate: float | None, 
         raise InputError("inertias are those of an arm's model", value="no model", remedy="give the arm's MJCF or URDF")
     if source is not None:
         drives = of_tables.drives_of(source.bodies, tables[0], data, stated)
-        data = {**of_arm(data, source.bodies, guesses, drives, stated.simulated), "inertias": stated.inertias}
+        data = of_arm(data, source.bodies, guesses, drives, stated.simulated)
+        source = source if data["kind"] == "manipulator" else None  # no model belongs to servos by themselves
+    if source is not None:
+        data["inertias"] = stated.inertias
     of_tables.put_right(data["axes" if source is None else "joints"], stated, guesses)
     return _case(data, tables, source, guesses, tags)
 

@@ -40,7 +40,8 @@ def from_lerobot(
     """Diagnose the joints of a local LeRobot data set, version 2.1 or 3; every episode is a run.
 
     Without a model each joint is a position servo: the action is its reference, the observed state its position. With
-    one the joints of an arm carry each other, and the model's actuators turn the action into efforts.
+    one the joints of an arm carry each other, and the model's actuators turn the action into efforts; a model without
+    actuators is not used.
 
     Args:
         path: folder of the data set.
@@ -65,6 +66,9 @@ def from_lerobot(
     guesses: list[str] = []
     scale = UNITS[unit or _guessed(found, guesses)]
     runs = [{n: x if n == CLOCK else scale * x for n, x in tables.items()} for tables in found.episodes.values()]
+    if model is not None and not any(d.drive for d in source_of(model).bodies.drives.values()):
+        model = None
+        guesses.append("the model is not used, because it has no actuator whose force is known: each joint is a servo")
     if model is None:
         case = case_of_tables(None, runs, None, Stated(), tags)
     else:

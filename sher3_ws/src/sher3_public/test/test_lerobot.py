@@ -173,12 +173,12 @@ def test_joints_are_taken_by_their_names_where_the_model_has_them(tmp_path, log)
     assert "1 of the data set's 3 episodes are in its folder" in answer.notes
 
 
-def test_a_model_without_actuators_is_refused_with_the_way_around(tmp_path, log):
-    """As the URDF of an arm of servos, whose log has no efforts."""
+def test_joints_of_a_model_without_actuators_are_servos(tmp_path, log):
+    """As the URDF of an arm of servos, whose log has no efforts: as late as without a model."""
     bare = log.xml.read_text() if isinstance(log.xml, Path) else log.xml
     (tmp_path / "bare.xml").write_text(bare[: bare.index("<actuator>")] + bare[bare.index("</actuator>") + 11 :])
-    folder = write_data_set(
-        tmp_path / "set", "v3.0", 1.0 / np.diff(log.time)[0], ["a", "b"], [(None, log.qpos, log.qpos)]
-    )
-    with pytest.raises(MachineError, match="leave the model out"):
-        gap.from_lerobot(folder, tmp_path / "bare.xml", unit="rad")
+    late = np.concatenate([log.qpos[:1].repeat(30, axis=0), log.qpos[:-30]])
+    folder = write_data_set(tmp_path / "set", "v3.0", 1.0 / np.diff(log.time)[0], ["a", "b"], [(None, log.qpos, late)])
+    alone, beside = (gap.from_lerobot(folder, model, unit="rad") for model in (None, tmp_path / "bare.xml"))
+    assert beside.causes and beside.causes == alone.causes
+    assert any("each joint is a servo" in guess for guess in beside.guessed)

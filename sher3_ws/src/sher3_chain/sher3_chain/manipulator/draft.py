@@ -59,6 +59,8 @@ def of_arm(
 ) -> dict[str, Any]:
     """Return a drafted chain of axes as the joints of a model; raises MachineError where they do not fit.
 
+    Where commands were recorded and the force of no joint is known, the chain remains one of servos, named as joints.
+
     Args:
         data: of the chain.
         model: of the arm.
@@ -84,11 +86,14 @@ def of_arm(
             if "actuator" in words and "qfrc" not in words and own.drive is not None and own.drive.gear != 1.0:
                 effort["factor"] = own.drive.gear
             drive_joint(joint, own, bool(words & OWN_EFFORT) if simulated is None else simulated, guesses)
-    commanded = [
-        j["name"] for j in joints if "reference" in j["signals"] and not {"effort", "command"} & j["signals"].keys()
-    ]
-    if commanded := [name for name in commanded if name not in drives]:
-        guesses.append(f"a reference and no force was recorded: {GAINS} of {', '.join(commanded)}")
+    if unforced := [j for j in joints if "reference" in j["signals"] and not _has_force(j)]:
+        names = [j["name"] for j in unforced]
+        why = dict.fromkeys(f"; {drives[name].reason}" for name in names if name in drives)
+        guesses.append(f"a reference and no force was recorded{''.join(why)}: {GAINS} of {', '.join(names)}")
+        if not any(map(_has_force, joints)):
+            guesses.append("without it the model is not used: each joint is a servo by itself, `kind: axes`")
+            of_joint = {joint: axes[a] for a, (joint, _) in found.items()}
+            return {**data, "axes": [{**of_joint[j["name"]], **j} for j in unforced]}
     model.at_rest(recorded, guesses)
     out = {"kind": "manipulator", "name": data["name"], "model": str(Path(model.label).resolve()), "time": data["time"]}
     return {**out, "joints": joints}
@@ -139,6 +144,11 @@ def _number(name: str) -> int | None:
     """Return the number that a name ends in."""
     found = re.search(r"\d+$", name)
     return int(found[0]) if found else None
+
+
+def _has_force(joint: Mapping[str, Any]) -> bool:
+    """Return whether the force of a joint was recorded, or follows from the law of its drive."""
+    return "command_law" in joint or not {"effort", "command"}.isdisjoint(joint["signals"])
 
 
 def _plain(name: str) -> str:

@@ -183,11 +183,8 @@ def not_judged(judged: Sequence[str], signals: Sequence[JointSignals], slips: Ma
         what = "no joint can be judged: efforts are this many times what the model needs"
         return MachineError(what, value=each, limit="1", remedy=remedy)
     if not judged:
-        remedy = (
-            "record efforts, or give a model whose actuators say what force a control is; of a servo whose reference "
-            "was recorded state the gains, `command_law: {kind: force, position_gain: ..., velocity_gain: ...}`, or "
-            "leave the model out: each joint is then a servo by itself"
-        )
+        gains = "`command_law: {kind: force, position_gain: ..., velocity_gain: ...}`"
+        remedy = f"record efforts, state the {gains} of servos, or leave the model out: each joint is a servo then"
         return MachineError(
             "no joint can be judged: none has a force that is known and a position that moves",
             value="0 joints",

@@ -55,6 +55,9 @@ def test_references_alone_ask_for_the_gains_of_the_servo(tmp_path):
     np.savez(tmp_path / "a.npz", time=TIME, q=Q, q_des=Q + 0.01)
     found = draft_arm(tmp_path / "a.npz", tmp_path / "lift.urdf")
     assert any("position_gain" in guess and "lift, swing" in guess for guess in found.guesses)
+    data = parse_yaml(found.text)
+    assert (data["kind"], [axis["name"] for axis in data["axes"]]) == ("axes", ["lift", "swing"])
+    assert {axis["command_law"]["kind"] for axis in data["axes"]} == {"position"}
 
 
 def test_a_current_has_an_unknown_gain(tmp_path):

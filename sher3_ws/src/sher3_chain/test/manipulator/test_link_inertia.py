@@ -83,6 +83,14 @@ def test_links_are_not_looked_for_where_a_load_does_as_well(loaded):
     assert not wrong_links(evidence, page, laws, [x.fit for x in payloads(evidence, candidates, plain)])
 
 
+def test_links_of_which_every_number_may_be_zero_are_none(loaded, monkeypatch):
+    evidence, candidates = loaded
+    page = next(e for e in candidates.effects if e.free() is not None)
+    laws = [(t.effect, t.site, t.shape) for t in beside(evidence, candidates)]
+    monkeypatch.setattr("sher3_chain.manipulator.causes.links.JACKKNIFE", np.inf)
+    assert wrong_links(evidence, page, laws) == []
+
+
 def test_a_link_that_no_judged_joint_carries_is_left_out(tmp_path):
     """The lift has no effort: its carriage, which the swing does not feel, has no number that could be told."""
     q, v, a = motion()

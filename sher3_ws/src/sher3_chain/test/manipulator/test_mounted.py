@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from scaras import C1, C2, L1, L2, M1, M2, M3, NAMES, machine, motion, record
+from sher3_chain.manipulator.readings.senses import thinned
 from sher3_diagnosis import diagnose
 
 DRY = (3.0, 1.5, 4.0)
@@ -55,6 +56,18 @@ def test_an_arm_on_a_wall_or_a_slope_is_said_and_keeps_its_causes(path, gravity)
 def test_an_upright_arm_is_not_hung_elsewhere_even_where_its_efforts_are_turned(path, turned):
     found = verdict(path, (0.0, 0.0, -9.81), turned)
     assert not any("hangs otherwise" in note for note in found.notes)
+
+
+def test_a_joint_that_moves_for_one_sample_has_no_part_in_where_an_arm_hangs(path, monkeypatch):
+    """One sample follows from four numbers of the joint's own exactly, and nothing over nothing is no weight."""
+
+    def hardly(views):
+        *signals, judged = thinned(views)
+        judged[:, 1] = np.arange(len(judged)) == np.flatnonzero(judged[:, 1])[0]
+        return *signals, judged
+
+    monkeypatch.setattr("sher3_chain.manipulator.readings.mounted.thinned", hardly)
+    assert any("hangs otherwise" in note for note in verdict(path, (9.81, 0.0, 0.0)).notes)
 
 
 def test_gravity_that_is_stated_is_believed(path):

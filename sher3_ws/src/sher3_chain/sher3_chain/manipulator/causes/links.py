@@ -151,11 +151,10 @@ def _sized(evidence: Evidence, found: Fit, page: Effect) -> Fit:
     """Return a fit of links without the numbers whose intervals hold zero."""
     terms = list[Term]()
     for i, term in enumerate(found.terms):
-        if term.effect.id == page.id:
-            sized = {n: 1.0 for n, x in _measured(found, i).items() if abs(x.value) > JACKKNIFE * x.error}
-            term = make_term(evidence.data, term.effect, term.site, sized)
-        if term.channels:
+        if term.effect.id != page.id:
             terms.append(term)
+        elif sized := {n: 1.0 for n, x in _measured(found, i).items() if abs(x.value) > JACKKNIFE * x.error}:
+            terms.append(make_term(evidence.data, term.effect, term.site, sized))
     return fit(evidence.data, terms)
 
 

@@ -26,6 +26,8 @@ SIZES = (0.5, 2.0)
 """Found gravity over that of the earth, between which it is one: weights of a rough model are wrong by less."""
 ROUNDS = 4
 """Rounds in which what is left of each joint is its weight."""
+UNKNOWNS = 7
+"""Numbers that are fitted to a joint: four of its own and gravity. A joint that hardly moves has no more samples."""
 
 
 def mounted(
@@ -56,7 +58,7 @@ def mounted(
     joints = [
         _beside_own(v[judged[:, i], i], a[judged[:, i], i], x[judged[:, i]]) for i, x in zip(rows, each, strict=True)
     ]
-    joints = [x for x in joints if np.any(x[:, 0])]
+    joints = [x for x in joints if len(x) > UNKNOWNS and np.any(x[:, 0])]
     if not joints:
         return None
     found = _pull(joints, model.tree.gravity)
