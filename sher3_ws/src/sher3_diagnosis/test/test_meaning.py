@@ -94,6 +94,18 @@ def test_a_lost_motion_is_no_wider_than_the_travel_and_shrinks_what_was_left_out
     assert says_nothing(evidence, found, 0, told) is empty
 
 
+@pytest.mark.parametrize(("end", "unit", "empty"), [(1.5, "rad", False), (2.5, "rad", True), (2.5, "N", False)])
+@pytest.mark.parametrize("sense", [1.0, -1.0])
+def test_a_size_in_the_unit_of_a_place_is_no_larger_than_the_travel(end, unit, empty, sense):
+    """What a servo sags under its weight, of whatever family: the travel is 2 m."""
+    evidence = evidence_of(case(6.0))
+    found = fit(evidence.data, [make_term(evidence.data, Column("sag", "load", "direction"), "axis", {})])
+    (name,) = linear_in(found.terms[0], found.of(0))
+    told = cause(**{name: tuple(sorted((sense, sense * end)))})
+    told.parameters[name] = told.parameters[name].model_copy(update={"unit": unit})
+    assert says_nothing(evidence, found, 0, told) is empty
+
+
 def test_a_law_that_is_no_more_than_a_simpler_one_becomes_that_one_and_others_go():
     rich = Column("rich", "friction", "direction", extends=("direction",))
     evidence = evidence_of(case(6.0))

@@ -115,7 +115,9 @@ class ChainView(GridView, ABC):
         return np.zeros(len(self.run.grid)) if warm is None else self.run.to_grid(warm - REFERENCE)[:, 0]
 
     def motion(self, actuator: str) -> Motion | None:
-        """Return the motion of a joint."""
+        """Return the motion of a joint; None for a link."""
+        if actuator not in self._rows:
+            return None
         row = self.row(actuator)
         return Motion(self.position[:, row], self.velocity[:, row], float(self.tops[row]), self.joints[row].lead)
 

@@ -23,7 +23,9 @@ from sher3_diagnosis.verdict import Cause, Parameter
 from sher3_diagnosis.words import place, range_text, words
 
 LOST = "lost_motion"
-"""Family of which nothing is wider than the travel."""
+"""Family of which nothing is wider than the travel, and no gap negative unless its page says so."""
+PLACES = ("m", "rad")
+"""Units of a place: no size in them is larger than the travel, such as the sag of a servo."""
 HALF = 0.5
 """Factor of all coefficients that shows which parameters they scale."""
 SPAN = 10.0
@@ -94,7 +96,7 @@ def says_nothing(evidence: Evidence, found: Fit, index: int, cause: Cause) -> bo
     """Return whether a cause has no size, cannot be, or does not shrink its gap on parts of the data left out."""
     term = found.terms[index]
     idle = cause.closure.value <= 0.0 or (cause.closure.low is not None and cause.closure.low <= 0.0)
-    return idle or of_no_size(term, found.of(index), cause) or impossible(evidence, term, cause)
+    return idle or of_no_size(term, found.of(index), cause) or impossible(evidence, term, found.of(index), cause)
 
 
 def of_no_size(term: Term, coefficients: Array, cause: Cause) -> bool:
@@ -162,13 +164,14 @@ def _scaled(term: Term, coefficients: Array, factor: float) -> dict[str, float]:
     return term.effect.parameters(term.shape, factor * np.asarray(coefficients))
 
 
-def impossible(evidence: Evidence, term: Term, cause: Cause) -> bool:
-    """Return whether an end of an interval lies where no value can; a gap is not negative unless its page says so."""
+def impossible(evidence: Evidence, term: Term, coefficients: Array, cause: Cause) -> bool:
+    """Return whether an end of an interval lies where no value can: beyond what its page says, or beyond the travel."""
     limits = dict(term.effect.limits(term.shape))
-    if term.effect.family == LOST:
-        travel = _travel(evidence, term.site)
-        wide = [n for n in cause.parameters if term.effect.units.get(n) == "m"]
-        limits |= {n: (limits.get(n, (0.0, travel))[0], travel) for n in wide}
+    travel, sizes = _travel(evidence, term.site), linear_in(term, coefficients)
+    for name, p in cause.parameters.items():
+        wide = term.effect.family == LOST and term.effect.units.get(name) == "m"
+        if wide or (name in sizes and evidence.own_unit(p.unit, term.site) in PLACES):
+            limits[name] = (limits.get(name, (0.0 if wide else -travel, travel))[0], travel)
     return any(_outside(cause.parameters[n], *limit) for n, limit in limits.items() if n in cause.parameters)
 
 
