@@ -70,7 +70,7 @@ def _read(name: str, tables: Tables, machine: ChainDescription, stamps: Array) -
     placed = [np.isfinite(x).any(axis=tuple(range(1, x.ndim))) for x in found if len(x) == len(stamps)]
     read = np.any(placed, axis=0) if placed else np.ones(len(stamps), dtype=bool)
     for x in (tables[find(column.column, tables, name)] for column in columns_of(machine)):
-        if x.shape == stamps.shape:
+        if x.shape == stamps.shape == (len(stamps),):  # a table of columns by number has no hole of one column
             read &= ~_in_hole(stamps, x)
     return np.asarray(read)
 
