@@ -176,9 +176,17 @@ def impossible(evidence: Evidence, term: Term, coefficients: Array, cause: Cause
 
 
 def _travel(evidence: Evidence, site: str) -> float:
-    """Return the largest travel of an axis, m or rad; infinite for a place that is no axis."""
-    moved = [view.motion(site) for view in evidence.views]
-    return max((float(np.ptp(m.position)) for m in moved if m is not None and len(m.position)), default=math.inf)
+    """Return how far an axis and its gap move at most, m or rad; infinite for a place that is no axis.
+
+    A load encoder moves beside a motor that is held.
+    """
+    moved = list[float]()
+    for view, residuals in zip(evidence.views, evidence.data.residuals, strict=True):
+        motion = view.motion(site)
+        if motion is not None and len(motion.position):
+            beside = [x.values for c, x in residuals.items() if c.actuator == site and evidence.units[c] in PLACES]
+            moved.append(float(np.ptp(motion.position)) + max((float(np.ptp(x)) for x in beside), default=0.0))
+    return max(moved, default=math.inf)
 
 
 def _outside(p: Parameter, least: float, most: float) -> bool:
