@@ -109,3 +109,13 @@ def test_a_search_goes_on_from_what_is_kept_as_if_it_had_not_ended(tmp_path, mon
     assert search(100, seed=5, kept=tmp_path) == whole and whole.found[:50] == first.found
     assert tried == [ROUND] * 8 and search(100, seed=5, kept=tmp_path) == whole and len(tried) == 8
     assert search(25, seed=6, kept=tmp_path).found != whole.found[:25]
+
+
+def test_an_axis_that_goes_while_both_its_encoders_drift_is_not_drawn():
+    drift = Fault("legs.encoders", Shape("encoders", "drift", "rate"), 0.1, 0)
+    assert replace(DRAW, faults=(DRAW.faults[0], drift)).hidden
+    assert not replace(DRAW, faults=(replace(DRAW.faults[0], component="tilt.power"), drift)).hidden
+    random = Random(4)
+    found = [drawn(random, Regime.NEAR_TISSUE) for _ in range(2000)]
+    assert not any(draw.hidden for draw in found)
+    assert any(fault.shape == drift.shape for draw in found for fault in draw.faults)

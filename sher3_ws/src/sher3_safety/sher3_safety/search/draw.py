@@ -1,7 +1,8 @@
 """What the search draws: two or three faults, how large, of which axis, when against each other, and in which state.
 
 Sizes are drawn evenly over their decades, onsets to the tick. Left out are faults whose residual is stated and which
-would always win: a force sensor that is false and small, a pedal that hangs, a motor that turns without power.
+would always win: a force sensor that is false and small, a pedal that hangs, a motor that turns without power, an axis
+that goes by itself while both its encoders drift.
 """
 
 from __future__ import annotations
@@ -39,6 +40,8 @@ class Shape(NamedTuple):
 
 
 RUNAWAYS = (Shape("power", "creep", "speed"), Shape("demand", "creep", "speed"))
+DRIFT = Shape("encoders", "drift", "rate")
+"""What hides the first of them: both encoders stay, and the echo does, while the axis goes."""
 WITH_AXIS = (
     *RUNAWAYS,
     Shape("echo", "stuck"),
@@ -47,7 +50,7 @@ WITH_AXIS = (
     Shape("motor_encoder", "stuck"),
     Shape("load_encoder", "drift", "rate"),
     Shape("motor_encoder", "drift", "rate"),
-    Shape("encoders", "drift", "rate"),
+    DRIFT,
     Shape("load_encoder", "jitter", "size"),
     Shape("encoders", "jitter", "size"),
     Shape("power", "wrong", "scale", -1.0),
@@ -114,6 +117,13 @@ class Draw:
         return (CUT_OFF if cut & going else RUNAWAY)[self.regime]
 
     @property
+    def hidden(self) -> bool:
+        """Whether an axis goes by itself while both its encoders drift."""
+        going, drifting = ({axis for fault in self.faults if fault.shape == shape for axis in fault.axes}
+                           for shape in (RUNAWAYS[0], DRIFT))  # fmt: skip
+        return bool(going & drifting)
+
+    @property
     def paused(self) -> bool:
         """Whether motion is paused."""
         return self.state.operating is OperatingState.PAUSED
@@ -134,7 +144,8 @@ def drawn(random: Random, regime: Regime) -> Draw:
         more = _fault(random, random.choice((*RUNAWAYS, *WITH_AXIS, *OF_ONE, *WHOLE)))
         if more.component not in [fault.component for fault in faults]:
             faults.append(more)
-    return Draw(_from_zero(faults), random.choice(STATES[regime]), regime)
+    found = Draw(_from_zero(faults), random.choice(STATES[regime]), regime)
+    return drawn(random, regime) if found.hidden else found
 
 
 def _fault(random: Random, shape: Shape) -> Fault:
