@@ -6,10 +6,11 @@ from collections.abc import Sequence
 
 import numpy as np
 from sher3_diagnosis.channel import Array, Channel, Floors, Residual, Residuals
+from sher3_diagnosis.localise.floors import UNIFORM
 
 from sher3_chain.axes.view import AxisView
 from sher3_chain.floors.foreseen import foreseen
-from sher3_chain.floors.innovation import NOTHING, UNIFORM, chain_floors, plain_innovation, white_behind
+from sher3_chain.floors.innovation import NOTHING, chain_floors, plain_innovation, white_behind
 
 
 def floors_of(records: Sequence[AxisView], found: Sequence[Residuals], repeats: bool) -> list[Floors]:

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from sher3_diagnosis.channel import Array
 from sher3_diagnosis.finding import ExactFinding
+from sher3_diagnosis.localise.floors import UNIFORM
 from sher3_diagnosis.quantify.closure import interval_of
 from sher3_diagnosis.thresholds import MIN_RUNS
 from sher3_diagnosis.verdict import Cause, Parameter, Residual, Where
@@ -20,7 +21,6 @@ from sher3_effects import computed
 from sher3_machines.intake.mending.readings import longest_run
 from sher3_machines.thresholds import BLOCKS
 
-from sher3_chain.floors.innovation import UNIFORM
 from sher3_chain.joint.description import Axis
 from sher3_chain.joint.record import AxesRun
 from sher3_chain.readings.signals import signals_of

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from sher3_diagnosis.localise.floors import UNIFORM
 from sher3_diagnosis.quantify.closure import interval_of
 from sher3_diagnosis.verdict import Cause, Interval
 from sher3_diagnosis.words import quantity
@@ -13,7 +14,6 @@ from sher3_machines.thresholds import BLOCKS
 
 from sher3_chain.axes.evidence import AxisEvidence
 from sher3_chain.axes.simulate import Law, law_of, simulate, simulated
-from sher3_chain.floors.innovation import UNIFORM
 
 
 @dataclass(frozen=True)

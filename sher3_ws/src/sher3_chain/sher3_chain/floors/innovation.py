@@ -16,8 +16,6 @@ from sher3_chain.chain.view import ChainView
 from sher3_chain.readings.signals import AxisSignals
 
 V = TypeVar("V", bound=ChainView)
-UNIFORM = np.sqrt(12.0)
-"""Width of a uniform distribution over its standard deviation: a count over the error of rounding to it."""
 NOISE_SAMPLES = 400
 """Samples of simulated noise at least, so that its filtered power is known to a few per cent."""
 ON_GRID = 20

@@ -16,6 +16,8 @@ from sher3_diagnosis.channel import Array, Channel, Floors, Residual, Residuals
 
 GAUSSIAN = 1.4826
 """Standard deviation over the median of absolute values, of a normal distribution."""
+UNIFORM = np.sqrt(12.0)
+"""Width of a uniform distribution over its standard deviation: a count over the error of rounding to it."""
 BEND = np.sqrt(6.0)
 """Standard deviation of second differences of white noise over that of the noise: 1 + 4 + 1 under the root."""
 ENOUGH = 50

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.special import binom
 
 from sher3_diagnosis.channel import Array
-from sher3_diagnosis.localise.floors import GAUSSIAN
+from sher3_diagnosis.localise.floors import GAUSSIAN, UNIFORM
 from sher3_diagnosis.verdict import Noise
 
 ORDER = 5
@@ -32,7 +32,7 @@ def noise_in(place: str, reading: str, unit: str, records: Sequence[Array], reso
         resolution: step of the readings; 0 where they show none.
     """
     sizes = [size if (size := noise_of(x)) > ROUNDING * np.ptp(x) else 0.0 for x in records]
-    deviation = max(float(np.sqrt(np.mean(np.square(sizes)))), resolution / np.sqrt(12.0))
+    deviation = max(float(np.sqrt(np.mean(np.square(sizes)))), resolution / UNIFORM)
     return Noise(actuator=place, reading=reading, deviation=deviation, resolution=resolution or None, unit=unit)
 
 

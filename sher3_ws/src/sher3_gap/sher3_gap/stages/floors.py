@@ -13,7 +13,7 @@ from sher3_description import ACTUATORS, Robot
 from sher3_description.contract import EFFORT_NOISE, EFFORT_RESOLUTION
 from sher3_diagnosis.channel import Channel, Floors, Residuals
 from sher3_diagnosis.filter import BANDWIDTH
-from sher3_diagnosis.localise.floors import relieved_rms, repeat_floors
+from sher3_diagnosis.localise.floors import UNIFORM, relieved_rms, repeat_floors
 
 from sher3_gap.signals import RunSignals
 from sher3_gap.stages.geometry import Geometry
@@ -29,17 +29,17 @@ def resolution_floors(robot: Robot, period: float) -> Floors:
     share = np.sqrt(min(1.0, 2.0 * BANDWIDTH * period))
     out: Floors = {}
     for name, a in zip(ACTUATORS, robot.actuators, strict=True):
-        counts = np.hypot(a.motor_encoder, a.load_encoder) / np.sqrt(12.0)
-        effort = share * a.drive.rated * np.hypot(EFFORT_NOISE, EFFORT_RESOLUTION / np.sqrt(12.0))
+        counts = np.hypot(a.motor_encoder, a.load_encoder) / UNIFORM
+        effort = share * a.drive.rated * np.hypot(EFFORT_NOISE, EFFORT_RESOLUTION / UNIFORM)
         out[Channel("transmission", name)] = np.array([counts])
-        held = a.drive.ki * a.motor_encoder / np.sqrt(12.0)
+        held = a.drive.ki * a.motor_encoder / UNIFORM
         out[Channel("drive", name)] = np.array([np.hypot(effort, held)])
         out[Channel("motor_mechanics", name)] = np.array([effort])
     tip = np.repeat([robot.tracker.noise_position, robot.tracker.noise_rotation], 3)
     out[Channel("mechanism", "tip")] = tip
     out[Channel("structure", "tip")] = tip
     sensor = robot.force_sensor
-    step = np.array([sensor.resolution_force] * 3 + [sensor.resolution_torque] * 3) / np.sqrt(12.0)
+    step = np.array([sensor.resolution_force] * 3 + [sensor.resolution_torque] * 3) / UNIFORM
     noise = np.array([sensor.noise_force] * 3 + [sensor.noise_torque] * 3)
     out[Channel("sensing", "force_sensor")] = np.maximum(share * np.hypot(noise, step), step)
     return out

@@ -8,6 +8,7 @@ that goes by itself while both its encoders drift.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from random import Random
 from typing import NamedTuple
@@ -112,16 +113,16 @@ class Draw:
     @property
     def budget(self) -> float:
         """Travel that is allowed [m]; of an axis that goes by itself while its drive is cut off, what is stated."""
-        cut, going = ({axis for fault in self.faults if fault.shape in shapes for axis in fault.axes}
-                      for shapes in (CUTS, RUNAWAYS))  # fmt: skip
-        return (CUT_OFF if cut & going else RUNAWAY)[self.regime]
+        return (CUT_OFF if self._axes(CUTS) & self._axes(RUNAWAYS) else RUNAWAY)[self.regime]
 
     @property
     def hidden(self) -> bool:
         """Whether an axis goes by itself while both its encoders drift."""
-        going, drifting = ({axis for fault in self.faults if fault.shape == shape for axis in fault.axes}
-                           for shape in (RUNAWAYS[0], DRIFT))  # fmt: skip
-        return bool(going & drifting)
+        return bool(self._axes(RUNAWAYS[:1]) & self._axes([DRIFT]))
+
+    def _axes(self, shapes: Sequence[Shape]) -> set[str]:
+        """Return the axes that faults of these shapes act on."""
+        return {axis for fault in self.faults if fault.shape in shapes for axis in fault.axes}
 
     @property
     def paused(self) -> bool:

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 from sher3_diagnosis.channel import Array, Residual
+from sher3_diagnosis.localise.floors import UNIFORM
 from sher3_machines.thresholds import BLOCKS
 
 from sher3_chain.axes.command.sampling import Sampling, stated_law
 from sher3_chain.axes.view import AxisView
-from sher3_chain.floors.innovation import UNIFORM, foresight, innovation
+from sher3_chain.floors.innovation import foresight, innovation
 from sher3_chain.joint.description import Axis
 from sher3_chain.readings.signals import AxisSignals
 from sher3_chain.thresholds import LAW_ROUNDED

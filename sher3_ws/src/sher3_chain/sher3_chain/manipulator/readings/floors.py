@@ -10,9 +10,10 @@ from collections.abc import Sequence
 
 import numpy as np
 from sher3_diagnosis.channel import Array, Channel, Floors, Residuals
+from sher3_diagnosis.localise.floors import UNIFORM
 from sher3_diagnosis.localise.readings import noise_of
 
-from sher3_chain.floors.innovation import NOTHING, UNIFORM, chain_floors, plain_innovation, white_behind
+from sher3_chain.floors.innovation import NOTHING, chain_floors, plain_innovation, white_behind
 from sher3_chain.manipulator.description import PER_RUN
 from sher3_chain.manipulator.view import MotionView
 
