@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import subprocess
-import time
 
 import pytest
 from processes import child_environment, sher3_command
@@ -40,9 +39,10 @@ while not {"speed_scale", "regime"} <= set(names) and time.monotonic() < end:
     names = call(ListParameters, "list_parameters", ListParameters.Request()).result.names
 print("listed", "speed_scale" in names, "regime" in names, "law.admittance.linear_gain" in names)
 print("set", put("speed_scale", type=3, double_value=0.5).successful)
-time.sleep(0.5)
-got = call(GetParameters, "get_parameters", GetParameters.Request(names=["speed_scale"]))
-print("got", got.values[0].double_value)
+wanted, value, end = GetParameters.Request(names=["speed_scale"]), None, time.monotonic() + 10.0
+while value != 0.5 and time.monotonic() < end:
+    value = call(GetParameters, "get_parameters", wanted).values[0].double_value
+print("got", value)
 refused = put("speed_scale", type=3, double_value=7.0)
 print("refused", refused.successful, refused.reason)
 fixed = put("motion.speed", type=3, double_value=0.1)
@@ -61,8 +61,9 @@ def running(domain):
     processes = []
     for command in commands:
         arguments = sher3_command(*command, "--domain", str(domain))
-        processes.append(subprocess.Popen(arguments, env=child_environment()))
-        time.sleep(2.0)
+        processes.append(subprocess.Popen(arguments, env=child_environment(), stdout=subprocess.PIPE, text=True))
+        if command[0] == "up":
+            assert processes[-1].stdout.readline().startswith("ready")
     try:
         yield domain
     finally:
