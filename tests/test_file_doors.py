@@ -16,8 +16,8 @@ from hypothesis import strategies as st
 from sher3_bags import read_case, read_run
 from sher3_bringup.surgeon.script import load_script
 from sher3_common import FileError, Sher3Error, parse_json, parse_yaml, read_bytes, read_json, read_text, read_yaml
-from sher3_common.array_files import read_arrays
-from sher3_common.files import MAX_CONFIGURATION_BYTES, MAX_DEPTH
+from sher3_common.files.arrays import read_arrays
+from sher3_common.files.text import MAX_CONFIGURATION_BYTES, MAX_DEPTH
 from sher3_description import load_robot
 from sher3_drivers.name_plates import load_name_plates
 from sher3_effects import load_effects

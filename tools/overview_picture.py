@@ -23,7 +23,7 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.patches import Circle, FancyBboxPatch
 from sher3_bags import read_case, read_run
-from sher3_common.files import read_json
+from sher3_common.files.text import read_json
 from sher3_description import ACTUATORS, Robot, load_robot
 from sher3_kinematics import RobotKinematics
 

@@ -12,7 +12,7 @@ from typing import Any, Literal
 
 import yaml
 from pydantic import Field, ValidationError, model_validator
-from sher3_common.files import parse_yaml, read_yaml
+from sher3_common.files.text import parse_yaml, read_yaml
 from typing_extensions import Self
 
 from sher3_description.actuators import ACTUATORS

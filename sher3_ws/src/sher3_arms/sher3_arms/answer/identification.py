@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from sher3_common import read_text, read_yaml
-from sher3_common.array_files import read_arrays
+from sher3_common.files.arrays import read_arrays
 
 from sher3_arms.errors import ArmsError
 from sher3_arms.files import DESCRIPTION, MODEL, RECORD

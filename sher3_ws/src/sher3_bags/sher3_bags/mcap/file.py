@@ -15,7 +15,8 @@ import lz4.frame
 import numpy as np
 import zstandard
 from mcap.opcode import Opcode
-from sher3_common import FileError, files
+from sher3_common import FileError
+from sher3_common.files import text
 
 from sher3_bags.errors import DamagedBagError, ForeignBagError, LimitError
 from sher3_bags.mcap import kernels
@@ -54,7 +55,7 @@ def read_bytes(path: Path) -> memoryview:
         LimitError: it is too large.
     """
     try:
-        data = files.read_bytes(path, MAX_FILE)
+        data = text.read_bytes(path, MAX_FILE)
     except FileError as error:
         kind = LimitError if error.limit is not None else ForeignBagError
         raise kind(error.reason, path=path, value=error.value, limit=error.limit, remedy=error.remedy) from error

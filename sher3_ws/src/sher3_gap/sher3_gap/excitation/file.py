@@ -15,7 +15,7 @@ from typing import Any, Literal
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from sher3_common import FileError, dump_yaml, read_yaml
-from sher3_common.array_files import read_arrays
+from sher3_common.files.arrays import read_arrays
 from sher3_description import Robot
 
 from sher3_gap.excitation import Excitation, check_limits

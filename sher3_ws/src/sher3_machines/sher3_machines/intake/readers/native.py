@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 from sher3_common import read_bytes
-from sher3_common.array_files import read_arrays
+from sher3_common.files.arrays import read_arrays
 from sher3_diagnosis.channel import Array
 
 MAX_MEMORY = 4_000_000_000

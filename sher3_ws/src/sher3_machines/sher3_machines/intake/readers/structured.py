@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 from sher3_common import parse_json, read_json
-from sher3_common.array_files import read_array, read_arrays
+from sher3_common.files.arrays import read_array, read_arrays
 from sher3_diagnosis.channel import Array
 
 from sher3_machines.errors import no_reader

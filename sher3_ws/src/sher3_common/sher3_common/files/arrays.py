@@ -15,7 +15,7 @@ import numpy as np
 from numpy.lib import format as npy
 
 from sher3_common.errors import FileError
-from sher3_common.files import read_bytes
+from sher3_common.files.text import read_bytes
 
 MAX_ARRAY_BYTES = 256 << 20
 """Largest size of all arrays of one file together [bytes]; ten minutes of an excitation at 1 kHz take 48 MB."""

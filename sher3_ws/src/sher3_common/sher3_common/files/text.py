@@ -1,7 +1,7 @@
 """The doors of files: regular files of bounded size read as bytes, text, YAML or JSON; folders made for new ones.
 
 What is read is plain data: no objects are constructed, aliases are refused, and the nesting is bounded. Arrays have a
-door of their own, `array_files`.
+door of their own, `files.arrays`.
 """
 
 from __future__ import annotations

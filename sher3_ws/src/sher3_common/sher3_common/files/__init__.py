@@ -1,0 +1,1 @@
+"""The doors of files: bytes, text, YAML and JSON (`text`), arrays (`arrays`)."""
