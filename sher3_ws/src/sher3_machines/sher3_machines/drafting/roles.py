@@ -89,14 +89,15 @@ def counted_alike(placed: Mapping[Place, tuple[str, str]]) -> dict[Place, tuple[
 
 
 def _named(tables: Tables, clock: str | None) -> dict[Place, tuple[str, str]]:
-    """Return signal and axis of every column whose name says one, of tables that have stamps."""
+    """Return signal and axis of every column whose name says one, of tables that have stamps: none is the clock's."""
     lengths = {table_of(n): len(x) for n, x in tables.items() if clock and bare(n) == bare(clock)}
     least = len(tables[clock]) if clock else 0
     found: dict[Place, tuple[str, str]] = {}
     for name, x in tables.items():
         stamped = len(x) == lengths.get(table_of(name), least) or not clock
         what = named(name)
-        if what.signal is None or not stamped or name == clock or counts_samples(name):
+        timed = clock is not None and bare(name) == bare(clock)
+        if what.signal is None or not stamped or timed or counts_samples(name):
             continue
         for index in range(x.shape[1]) if x.ndim == 2 and x.shape[1] <= WIDEST else [None]:
             if x.ndim == 1 or index is not None:
@@ -267,7 +268,7 @@ def _rank(place: Place, table: str) -> tuple[bool, bool, int, bool]:
     """Return what orders columns for one signal, the least first: in the table, measured, not made of another, and of
     what is asked for a place.
     """
-    words = set(words_of(bare(place[0])))
+    words = set(words_of(place[0]))
     made = bool(words & DERIVED) + 2 * bool(words & MODELLED)
     vague = bool(words & ASKED) and not words & (POSITION | VELOCITY)
     return bool(table) and table_of(place[0]) != table, not words & MEASURED, made, vague

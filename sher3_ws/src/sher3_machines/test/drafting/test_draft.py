@@ -220,6 +220,19 @@ def test_a_speed_that_is_asked_of_both_wheels_is_the_reference_of_each(tmp_path,
     ]
 
 
+def test_a_file_for_each_signal_without_headers_has_a_clock_of_its_own_and_its_name_says_what_is_asked(tmp_path):
+    """A folder of the log of a UR5: its clock was an axis, and the moment asked for the reference of the place."""
+    t, folder = np.arange(0.0, 10.0, 0.008), tmp_path / "log"
+    folder.mkdir()
+    both = [np.sin(t), np.cos(0.7 * t)]
+    for name, size in {"i_actual": 2.0, "i_target": 1.9, "m_target": 12.0, "q_actual": 1.0, "q_target": 1.01}.items():
+        np.savetxt(folder / f"log_{name}.csv", np.column_stack([t, *(size * x for x in both)]), delimiter=",")
+    axes = parse_yaml(draft(folder).text)["axes"]
+    asked = {"position": "q_actual", "reference": "q_target", "command": "i_target", "effort": "i_actual"}
+    told = [{k: v["column"] for k, v in axis["signals"].items()} for axis in axes]
+    assert told == [{k: f"log_{name}/c{n}" for k, name in asked.items()} for n in (1, 2)]
+
+
 @pytest.mark.parametrize(("unit", "count"), [("rad", 0.01), ("mm", 1e-5), ("deg", np.deg2rad(0.01))])
 def test_the_count_of_an_encoder_is_in_the_unit_of_its_column(tmp_path, unit, count):
     """Who writes mm for the rad that was guessed has the count in mm too."""

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from sher3_machines.drafting.draft import name_of, unused, written
-from sher3_machines.drafting.names import bare_and_unit, tells_time
+from sher3_machines.drafting.names import ASKED, bare_and_unit, tells_time, words_of
 from sher3_machines.intake.kind import Draft
 from sher3_machines.intake.spelling import bare
 from sher3_machines.intake.tables import Tables
@@ -22,8 +22,12 @@ PARTS: Mapping[str, tuple[str, str, str]] = {
 
 
 def wrench_of(tables: Tables) -> dict[str, list[str]]:
-    """Return the columns of force, torque and orientation, those of which every component is there, in their order."""
+    """Return the columns of force, torque and orientation, those of which every component is there, in their order.
+
+    What was measured comes before what was asked for, such as the goal of a pose.
+    """
     plain = {bare_and_unit(bare(n))[0].lower(): n for n, x in tables.items() if x.ndim == 1}
+    plain = dict(sorted(plain.items(), key=lambda item: not set(words_of(item[0])) & ASKED))
     found = {}
     for part, (stem, letters, _) in PARTS.items():
         each = {}

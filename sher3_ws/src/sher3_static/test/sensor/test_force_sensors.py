@@ -8,6 +8,7 @@ from sher3_diagnosis import diagnose
 from sher3_diagnosis.judge.costs import Costs
 from sher3_machines import MachineError
 from sher3_static.sensor.description import SensorDescription
+from sher3_static.sensor.draft import wrench_of
 from sher3_static.sensor.frames import frames
 from sher3_static.sensor.kind import KIND
 from sher3_static.sensor.reading import read_sensor, scatter
@@ -140,6 +141,14 @@ def test_records_that_tell_nothing_are_refused():
         verdict_of(dead)
     with pytest.raises(MachineError, match=r"too few readings; value 12"):
         verdict_of(readings(n=12))
+
+
+@pytest.mark.parametrize("order", [("current", "goal"), ("target", "measured")])
+def test_a_sensor_is_turned_as_was_measured_and_not_as_was_asked_for(order):
+    """An arm's log of poses and goals, the goal before or behind."""
+    names = [f"{who}_orientation_{x}" for who in order for x in "xyzw"]
+    tables = {n: np.zeros(9) for n in [*names, *(f"{f}_{x}" for f in ("force", "torque") for x in "xyz")]}
+    assert wrench_of(tables)["quaternion"] == [n for n in names if n.startswith(("current", "measured"))]
 
 
 def test_the_floor_is_the_noise_in_every_frame():
