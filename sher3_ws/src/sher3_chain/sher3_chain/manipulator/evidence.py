@@ -184,7 +184,7 @@ def not_judged(judged: Sequence[str], signals: Sequence[JointSignals], slips: Ma
         return MachineError(what, value=each, limit="1", remedy=remedy)
     if not judged:
         gains = "`command_law: {kind: force, position_gain: ..., velocity_gain: ...}`"
-        remedy = f"record efforts, state the {gains} of servos, or leave the model out: each joint is a servo then"
+        remedy = f"record efforts, or references: state the {gains} of servos, or leave the model out of their draft"
         return MachineError(
             "no joint can be judged: none has a force that is known and a position that moves",
             value="0 joints",

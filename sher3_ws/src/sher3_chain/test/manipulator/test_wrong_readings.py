@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from lifts import PERIOD, friction, machine, needed
 from sher3_chain.joint.record import AxesRun
+from sher3_chain.manipulator.evidence import not_judged
 from sher3_diagnosis import diagnose
 
 JOINTS = ("lift", "swing")
@@ -132,3 +133,7 @@ def test_a_drive_that_is_ten_milliseconds_early_on_a_light_joint_is_not_lost_in_
     assert (cause.effect, cause.actuator) == ("sensor_delay", "swing")
     assert cause.parameters["effort_delay"].low <= -10e-3 <= cause.parameters["effort_delay"].high
     assert verdict(path, effort=lambda e: e + noise).status == "no_gap"
+
+
+def test_joints_without_forces_and_references_are_not_told_to_be_servos():
+    assert "record efforts, or references" in str(not_judged([], [], {}))
