@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import block_diag
 from scipy.optimize import least_squares
 from sher3_diagnosis.channel import Array
 
@@ -47,16 +46,20 @@ def physical(tree: Tree, own: Array, change: Array, places: NDArray[np.int64]) -
     body = max(float(np.mean(own[:, 0])), np.finfo(float).tiny)
     unit = np.tile(body * SIZE ** np.repeat([0.0, 1.0, 2.0], [1, 3, 6]), len(own))
     least = DUST * body * np.diag([THIN**2] * 3 + [1.0])
+    of = np.arange(len(own))
 
     def bodies(lower: Array) -> Array:
-        return np.array([_parameters(x @ x.T + least) for x in _matrices(lower)]).ravel()
+        x = _matrices(lower)
+        return _parameters(x @ x.swapaxes(1, 2) + least).ravel()
 
     def left(lower: Array) -> Array:
         step = bodies(lower) - own.ravel()
         return np.concatenate([base[:, :-1] @ step - base[:, -1], NEAR * step / unit])
 
     def slope(lower: Array) -> Array:
-        step = block_diag(*map(_slope, _matrices(lower)))
+        step = np.zeros((*own.shape, *own.shape))
+        step[of, :, of] = _slopes(_matrices(lower))
+        step = step.reshape(own.size, own.size)
         return np.concatenate([base[:, :-1] @ step, NEAR * step / unit[:, None]])
 
     start = np.concatenate([_lower(_pseudo(x) - least) for x in own])
@@ -88,10 +91,10 @@ def _matrices(lower: Array) -> Array:
     return out
 
 
-def _slope(lower: Array) -> Array:
-    """Return the slope of a body's parameters over the numbers of its triangular matrix, (10, 10)."""
-    units = _matrices(np.eye(PARAMETERS).ravel())
-    return np.array([_parameters(unit @ lower.T + lower @ unit.T) for unit in units]).T
+def _slopes(lower: Array) -> Array:
+    """Return the slopes of bodies' parameters over the numbers of their triangular matrices (n, 4, 4), (n, 10, 10)."""
+    half = UNITS @ lower[:, None].swapaxes(2, 3)
+    return _parameters(half + half.swapaxes(2, 3)).swapaxes(1, 2)
 
 
 def _lower(pseudo: Array) -> Array:
@@ -110,7 +113,11 @@ def _pseudo(inertial: Array) -> Array:
 
 
 def _parameters(pseudo: Array) -> Array:
-    """Return the inertial parameters (10,) of a pseudo-inertia (4, 4)."""
-    second = pseudo[:3, :3]
-    about = np.trace(second) * np.eye(3) - second
-    return np.array([pseudo[3, 3], *pseudo[:3, 3], *about[SIX]])
+    """Return the inertial parameters (..., 10) of pseudo-inertias (..., 4, 4)."""
+    second = pseudo[..., :3, :3]
+    about = np.trace(second, axis1=-2, axis2=-1)[..., None, None] * np.eye(3) - second
+    return np.concatenate([pseudo[..., 3, 3:], pseudo[..., :3, 3], about[..., SIX[0], SIX[1]]], axis=-1)
+
+
+UNITS = _matrices(np.eye(PARAMETERS).ravel())
+"""The ten triangular matrices of a single one, (10, 4, 4)."""
