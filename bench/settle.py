@@ -4,9 +4,9 @@
 
 Every robot is drawn, simulated and diagnosed. Where the best bet of the first place has odds between 10 and 90 % and
 the verdict foretells what an experiment makes of them, the same robot runs this experiment, and the case with all of
-its runs is diagnosed again; where that does not settle it (95 %), what the new verdict names follows. Printed are the
-odds of that bet before, as expected, and of the likeliest answer after each experiment, and the shares with their
-intervals.
+its runs is diagnosed again; where that does not settle it (95 %), what the new verdict names follows. A tracker that
+was added stays. Rivals of which the verdict says that nothing tells them apart are one answer. Printed are the odds of
+that bet before, as expected, and of the likeliest answer after each experiment, and the shares with their intervals.
 """
 
 from __future__ import annotations
@@ -69,7 +69,7 @@ def signals(plan: CasePlan, runs: Sequence[RunPlan], robot: Robot) -> list[Any]:
 def run_again(plan: CasePlan, asked: NextExperiment, taken: int, robot: Robot) -> list[Any]:
     """Return the signals of an experiment that follows `taken` runs, with what it adds; no repeats of what there is."""
     climate = replace(plan.climate, start=plan.climate.start + WARMER * (asked.added == WARMED))
-    other = replace(plan, climate=climate, tracker=plan.tracker or asked.added == TRACKED)
+    other = replace(plan, climate=climate)
     if asked.excitation == SAME:
         recorded = {run.excitation.label: run.excitation for run in plan.runs}
         new = [(replace(e, name=f"{e.name}_again"), 0) for e in recorded.values()]
@@ -118,20 +118,23 @@ def settled(seed: int, kind: str, robot: Robot) -> Settled | None:
     true = " + ".join(f.kind.effect for f in plan.faults)
     said = f"{plan.truth.name} {seed}: {true}; {named(bet)} {bet.probability:.2f}"
     while foretold(asked) and len(after) < MOST:
+        plan = replace(plan, tracker=plan.tracker or asked.added == TRACKED)  # and it stays there
         runs += run_again(plan, asked, len(runs), robot)
         verdict = diagnose_runs(runs, robot).verdict
         found = same_place(verdict, place)
         answers = found.answers if found else [Answer(answer="no_gap", probability=0.0)]
-        likely = answers[0]
-        reached.append(sum(a.probability for a in answers if is_right(a, plan)))
-        after.append((likely.probability, is_right(likely, plan)))
+        likely, one = answers[0], verdict.one_answer if found is verdict.places[0] else []
+        together = one if likely in one else [likely]
+        right = any(is_right(a, plan) for a in together)
+        reached.append(sum(a.probability for a in answers if is_right(a, plan) or (right and a in together)))
+        after.append((sum(a.probability for a in together), right))
         said += (
             f"; {asked.excitation}{' with ' * bool(asked.added)}{asked.added}, {asked.expected_odds:.2f} expected: "
-            f"{named(likely)} {likely.probability:.2f} {'right' if after[-1][1] else 'wrong'}"
+            f"{' or '.join(map(named, together))} {after[-1][0]:.2f} {'right' if right else 'wrong'}"
         )
-        if likely.probability >= SETTLED:
-            break
         asked = verdict.next_experiment
+        if after[-1][0] >= SETTLED or (asked and len(together) == len(asked.separates)):
+            break
     print(said, flush=True)
     return Settled(bet.probability, expected, reached[0], tuple(after))
 

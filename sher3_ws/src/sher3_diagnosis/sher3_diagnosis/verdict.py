@@ -132,7 +132,8 @@ class NextExperiment(_Model):
     """The excitation that best tells the rivals apart.
 
     `added` is what the recorded runs had not, in words. `expected_odds` is the probability after it of the
-    effect that is at work, on average over the rivals; None where it is not foretold.
+    effect that is at work, on average over the rivals; None where it is not foretold. `alike`: the best bet and the
+    effects that nothing the machine can run tells from it, as `effect:actuator`: they are one answer.
     """
 
     excitation: str
@@ -140,6 +141,7 @@ class NextExperiment(_Model):
     separates: list[str]
     predicted_separation: float | None
     added: str = ""
+    alike: list[str] = []
     expected_odds: float | None = Field(default=None, ge=0.0, le=1.0)
 
 
@@ -215,6 +217,14 @@ class Verdict(_Model):
     seconds: float = 0.0
     versions: dict[str, str] = {}
     notes: list[str] = []
+
+    @property
+    def one_answer(self) -> list[Answer]:
+        """The answers to the first place that nothing tells from its best bet, itself first; none where it is alone."""
+        alike = self.next_experiment.alike if self.next_experiment else []
+        first = self.places[0].answers if self.places else []
+        found = [a for a in first if a.causes and all(f"{c.effect}:{c.actuator}" in alike for c in a.causes)]
+        return found if len(found) > 1 and found[0] is self.places[0].bet else []
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False, populate_by_name=True)
 

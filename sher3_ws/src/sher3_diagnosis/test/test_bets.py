@@ -7,7 +7,9 @@ from sher3_diagnosis.flow import diagnose
 from sher3_diagnosis.judge.bets import NONE, exact_place, placed, shares
 from sher3_diagnosis.judge.probabilities import of_first
 from sher3_diagnosis.report.odds import answered, odds, sizes
-from sher3_diagnosis.verdict import Answer, Cause, Interval, Parameter, Residual, Verdict, Where
+from sher3_diagnosis.report.summary import five_lines
+from sher3_diagnosis.reporter import Reporter
+from sher3_diagnosis.verdict import Answer, Cause, Interval, NextExperiment, Parameter, Residual, Verdict, Where
 from toy import DIRECTION, Column, Toy, case
 
 WHERE = Where(stage="transport", actuator="all", gap=1e-3, floor=1e-9, unit="m/s", regime="", confidence=1.0)
@@ -86,6 +88,22 @@ def test_the_headline_speaks_the_odds():
     sure = bet.model_copy(update={"probability": 0.99})
     assert spoken(sure, lacks.model_copy(update={"probability": 0.01}), status="attributed") == ""
     assert spoken(rare.model_copy(update={"probability": 0.01}), lacks) == ""
+
+
+def test_what_nothing_tells_apart_is_spoken_of_as_one():
+    weight, mass = (
+        Answer(causes=[cause(x)], probability=p) for x, p in (("gravity_load", 0.47), ("payload_mass", 0.46))
+    )
+    lacks = Answer(answer="outside_library", probability=0.07)
+    alike = ["gravity_load:all", "payload_mass:all"]
+    tells = NextExperiment(excitation="steps", purpose="", separates=[], predicted_separation=0.0, alike=alike)
+    more = {"status": "attributed", "causes": [*weight.causes], "costs": {"name": 1.0}, "next_experiment": tells}
+    verdict = Verdict.model_construct(places=[placed(WHERE, [weight, mass, lacks])], **more)
+    said = "gravity load on all axes or payload mass on all axes (the same data), 93 %"
+    assert odds(verdict) == f"{said}; or something like it that the library lacks, 7 %"
+    tells = tells.model_copy(update={"separates": ["gravity_load", "payload_mass"]})
+    lines = dict(five_lines(verdict.model_copy(update={"next_experiment": tells, "where": [WHERE]}), Reporter()))
+    assert lines["next"] == "nothing that this machine can run tells gravity load / payload mass apart"
 
 
 def test_an_answer_is_its_causes_and_the_sizes_that_are_told():

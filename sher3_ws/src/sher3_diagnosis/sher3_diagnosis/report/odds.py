@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from sher3_diagnosis.verdict import Answer, Cause, Parameter, Place, Unexplained, Verdict
 from sher3_diagnosis.words import listed, lower, place, quantity, range_text, share, words
 
@@ -24,11 +26,12 @@ def odds(verdict: Verdict) -> str:
     first = verdict.places[0] if verdict.places else None
     if first is None or first.bet is None or verdict.status not in ("attributed", "outside_library"):
         return ""
-    ranked = _spoken(first, verdict.status == "attributed")
+    one = verdict.one_answer
+    ranked = [a for a in _spoken(first, verdict.status == "attributed") if a not in one[1:]]
     if ranked[0].probability >= SURE or not any(a.causes for a in ranked):
         return ""
-    text = "; or ".join(_said(a, first, i) for i, a in enumerate(ranked))
-    named = _names(first.bet)
+    text = "; or ".join(_said(a, first, i, one) for i, a in enumerate(ranked))
+    named = {x for a in (first.bet, *one) for x in _names(a)}
     beside = [sized(c) for c in verdict.causes if (c.effect, c.actuator) not in named]
     return text + (f"; besides {listed(beside)}" if beside else "")
 
@@ -44,7 +47,7 @@ def _at(where: Place | Unexplained) -> str:
     return f"{lower(where.stage)}, {place(where.actuator)}"
 
 
-def _names(of: Answer | Verdict) -> set[tuple[str, str]]:
+def _names(of: Answer) -> set[tuple[str, str]]:
     """Return effects and places of causes."""
     return {(c.effect, c.actuator) for c in of.causes}
 
@@ -96,9 +99,10 @@ def _spoken(first: Place, named: bool) -> list[Answer]:
     return [a for a in ranked if a.probability >= SPOKEN or a is ranked[0]][:MOST]
 
 
-def _said(answer: Answer, first: Place, rank: int) -> str:
-    """Return an answer with its probability and, of the best explanation, its size and closure."""
-    likely = share(answer.probability)
+def _said(answer: Answer, first: Place, rank: int, one: Sequence[Answer]) -> str:
+    """Return an answer with its probability and, of the best explanation and what is one with it, size and closure."""
+    together = (one or [answer]) if answer is first.bet else [answer]
+    likely = share(sum(a.probability for a in together))
     if answer.answer == "no_gap":
         return f"no gap, {likely}"
     if answer.answer is not None:
@@ -107,7 +111,8 @@ def _said(answer: Answer, first: Place, rank: int) -> str:
     if answer is not first.bet:
         return f"{listed([name_of(c) for c in answer.causes])}, {likely}"
     closes = "" if answer.closure is None else f": closes {share(answer.closure.value)}"
-    return f"{listed([sized(c) for c in answer.causes])}, {likely}{closes}"
+    names = " or ".join(listed([sized(c) for c in a.causes]) for a in together)
+    return f"{names}{' (the same data)' * (len(together) > 1)}, {likely}{closes}"
 
 
 def answered(answer: Answer) -> str:

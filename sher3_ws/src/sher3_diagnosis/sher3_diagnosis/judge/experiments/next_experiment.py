@@ -30,41 +30,50 @@ def next_experiment(machine: Machine, finding: Finding) -> NextExperiment | None
     judged = next((j for j in finding.judged if _open(j) and term_of(whole, j, 0).key in named), None)
     if judged is None:
         return None
+    foretold = _foretold(machine, whole, judged)
+    if foretold is not None:
+        return foretold
     effects = [term_of(whole, judged, k).effect for k in sharing(judged)]
     ids = list(dict.fromkeys(effect.id for effect in effects))
-    best = best_of(machine, whole, judged)
+    shows = next((e for e in effects if e.id != ids[0]), effects[0]).best
+    return NextExperiment(excitation=shows.excitation, purpose=shows.why, separates=ids, predicted_separation=None)
+
+
+def _foretold(machine: Machine, finding: Finding, judged: Judged) -> NextExperiment | None:
+    """Return the experiment that promises most; what the recorded runs had not is added only where it is needed.
+
+    That nothing tells two effects apart is known once every experiment was rehearsed.
+    """
+    enough, rivals, groups = SETTLED * judged.library, Rivals.of(finding, judged), []
+    rehearsals = machine.of(finding.evidence).rehearsals(finding.evidence)
+    alike = rivals.each
+    for _, group in groupby(rehearsals, key=lambda x: (x.added, x.elsewhere)):
+        groups.append([(x, rivals.prospect(x.data)) for x in group])
+        if any(p.odds(alike) >= enough for _, p in groups[-1]):
+            break
+    else:
+        alike = rivals.inseparable([p for tries in groups for _, p in tries])
+    best: tuple[Rehearsal, Prospect] | None = None
+    for tries in groups:
+        likeliest = max(tries, key=lambda t: (min(t[1].odds(alike), enough), t[1].separation))
+        if best is None or best[1].odds(alike) < min(enough, likeliest[1].odds(alike) - LISTED):
+            best = likeliest
     if best is None:
-        shows = next((e for e in effects if e.id != ids[0]), effects[0]).best
-        return NextExperiment(excitation=shows.excitation, purpose=shows.why, separates=ids, predicted_separation=None)
-    tried, promise = best
+        return None
+    tried, _ = best
+    levels = LABELLED if tried.elsewhere else (0.0,)
+    promise = rivals.prospect(tried.data, levels, tried.as_built and tried.as_built())
+    keys = {k: term_of(finding, judged, k).key for k in sharing(judged)}
+    one = rivals.one_answer(min(keys), alike)
     return NextExperiment(
         excitation=tried.excitation,
         purpose=tried.purpose,
         added=tried.added,
-        separates=ids,
+        separates=list(dict.fromkeys(effect for effect, _ in keys.values())),
+        alike=[":".join(keys[k]) for k in sorted(one)] if len(one) > 1 else [],
         predicted_separation=promise.separation,
-        expected_odds=promise.odds,
+        expected_odds=promise.odds(alike),
     )
-
-
-def best_of(machine: Machine, finding: Finding, judged: Judged) -> tuple[Rehearsal, Prospect] | None:
-    """Return the experiment that promises most; what the recorded runs had not is added only where it is needed."""
-    enough = SETTLED * judged.library
-    best = None
-    rivals = Rivals.of(finding, judged)
-    rehearsals = machine.of(finding.evidence).rehearsals(finding.evidence)
-    for _, tries in groupby(rehearsals, key=lambda x: (x.added, x.elsewhere)):
-        prospects = [(x, rivals.prospect(x.data)) for x in tries]
-        likeliest = max(prospects, key=lambda t: (min(t[1].odds, enough), t[1].separation))
-        if best is None or likeliest[1].odds > best[1].odds + LISTED:
-            best = likeliest
-        if best[1].odds >= enough:
-            break
-    if best is None:
-        return None
-    chosen, _ = best
-    levels = LABELLED if chosen.elsewhere else (0.0,)
-    return chosen, rivals.prospect(chosen.data, levels, chosen.as_built and chosen.as_built())
 
 
 def _open(j: Judged) -> bool:

@@ -7,7 +7,7 @@ which form a rival's law has, each form may be at work, and each may stand in fo
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -29,17 +29,44 @@ FORMS = 10
 force shows on which axis. Laws of more forms have a number in them, which the recorded runs tell."""
 
 
+Alike = Sequence[frozenset[int]]
+"""For each law the effects that nothing tells from it, its own among them."""
+
+
 @dataclass(frozen=True)
-class Prospect:
-    """What an experiment promises, on average over the rivals by their odds.
+class Outcome:
+    """What an experiment leads to where one law is at work.
 
     Attributes:
-        odds: probability after it of the effect that is at work.
-        separation: by how much the closest of the others then stays behind, per sample, in squares of the floor.
+        law: its number.
+        odds: that this law is at work, if one of the laws is.
+        library: probability after it that the library holds the cause.
+        far: unlikeness of each effect to it.
+        behind: by how much the closest of the others stays behind, per sample, in squares of the floor.
     """
 
+    law: int
     odds: float
-    separation: float
+    library: float
+    far: Mapping[int, float]
+    behind: float
+
+
+@dataclass(frozen=True)
+class Prospect:
+    """What an experiment promises: an outcome for each law that may be at work."""
+
+    outcomes: Sequence[Outcome]
+
+    @property
+    def separation(self) -> float:
+        """By how much the closest rival stays behind, per sample, on average over the laws."""
+        return sum(o.odds * o.behind for o in self.outcomes)
+
+    def odds(self, alike: Alike) -> float:
+        """Return the probability after it of what is at work, and of what nothing tells from it, over the laws."""
+        each = ((o, k, p) for o in self.outcomes for k, p in zip(o.far, _shares(o.far), strict=True))
+        return sum(o.odds * o.library * p for o, k, p in each if k in alike[o.law])
 
 
 @dataclass(frozen=True)
@@ -104,21 +131,37 @@ class Rivals:
         if built is not None:
             causes = [t for t in joined if not isinstance(t.effect, AsBuilt)]
             joined = [*_beside(built, [*causes, *(t for x in tried for t in x)]), *causes]
-        odds, apart = 0.0, 0.0
-        for law, own in zip(self.laws, added, strict=True):
+        outcomes = []
+        for i, (law, own) in enumerate(zip(self.laws, added, strict=True)):
             samples = sum(n for (_, c), n in more.samples.items() if c in own.channels)
             for level in levels:
                 both = self.data.with_runs(more, predicted(law.found, [*beside, own], more, level))
                 best = self._best([fit(both, [*joined, *t]) for t in tried])
-                after = best.pop(law.effect)
+                after = best[law.effect]
                 worth = fit(both, joined).total - after.total
-                far = np.array([0.0, *(unlikeness(f, after.total, worth) for f in best.values())])
-                judged = self.judged
-                library = with_bend(judged, law.found, after, both, worth) if level else judged.library
-                odds += law.odds / len(levels) * library * float(shares_of(far, in_force())[0])
-                behind = min((f.total - after.total for f in best.values()), default=0.0)
-                apart += law.odds / len(levels) * max(0.0, behind) / max(1, samples)
-        return Prospect(odds, apart)
+                library = with_bend(self.judged, law.found, after, both, worth) if level else self.judged.library
+                far = {k: unlikeness(f, after.total, worth) if k != law.effect else 0.0 for k, f in best.items()}
+                behind = min((f.total - after.total for k, f in best.items() if k != law.effect), default=0.0)
+                odds = law.odds / len(levels)
+                outcomes.append(Outcome(i, odds, library, far, max(0.0, behind) / max(1, samples)))
+        return Prospect(outcomes)
+
+    @property
+    def each(self) -> Alike:
+        """Every effect by itself."""
+        return [frozenset({law.effect}) for law in self.laws]
+
+    def inseparable(self, prospects: Sequence[Prospect]) -> Alike:
+        """Return what no experiment tells apart: where a law is at work, such an effect explains as much in all."""
+        parted: list[set[int]] = [set() for _ in self.laws]
+        for o in (o for p in prospects for o in p.outcomes):
+            parted[o.law] |= {k for k, far in o.far.items() if far >= 1.0}
+        return [frozenset({law.effect for law in self.laws} - x) for x in parted]
+
+    def one_answer(self, effect: int, alike: Alike) -> set[int]:
+        """Return the effects that are one answer with an effect, whichever of them is at work in whichever form."""
+        every = [(law.effect, x) for law, x in zip(self.laws, alike, strict=True)]
+        return {k for k, _ in every if all({effect, k} <= x for e, x in every if e in (effect, k))}
 
     def _best(self, fits: Sequence[Fit]) -> dict[int, Fit]:
         """Return the best fit of each effect, of one fit for each law."""
@@ -129,6 +172,11 @@ class Rivals:
 def sharing(j: Judged) -> list[int]:
     """Return the numbers of the candidates that share the odds of the library."""
     return [k for k, p in enumerate(j.effects) if p >= LISTED * j.library]
+
+
+def _shares(far: Mapping[int, float]) -> list[float]:
+    """Return how effects share the probability of the library, each that unlike the law at work."""
+    return [float(p) for p in shares_of(np.array(list(far.values())), in_force())]
 
 
 def _beside(terms: Sequence[Term], laws: Sequence[Term]) -> list[Term]:
