@@ -133,7 +133,7 @@ class NextExperiment(_Model):
 
     `added` is what the recorded runs had not, in words. `expected_odds` is the probability after it of the
     effect that is at work, on average over the rivals; None where it is not foretold. `alike`: the best bet and the
-    effects that nothing the machine can run tells from it, as `effect:actuator`: they are one answer.
+    effects that no rehearsed experiment tells from it, as `effect:actuator`: they are one answer.
     """
 
     excitation: str

@@ -103,7 +103,7 @@ def test_what_nothing_tells_apart_is_spoken_of_as_one():
     assert odds(verdict) == f"{said}; or something like it that the library lacks, 7 %"
     tells = tells.model_copy(update={"separates": ["gravity_load", "payload_mass"]})
     lines = dict(five_lines(verdict.model_copy(update={"next_experiment": tells, "where": [WHERE]}), Reporter()))
-    assert lines["next"] == "nothing that this machine can run tells gravity load / payload mass apart"
+    assert lines["next"] == "no experiment that was rehearsed tells gravity load / payload mass apart"
 
 
 def test_an_answer_is_its_causes_and_the_sizes_that_are_told():

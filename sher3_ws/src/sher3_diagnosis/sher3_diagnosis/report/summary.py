@@ -204,7 +204,7 @@ def _next(verdict: Verdict, reporter: Reporter[Any], case: str, folder: str, opt
     e = verdict.next_experiment
     one = {c.effect for a in verdict.one_answer for c in a.causes}
     if e is not None and one >= set(e.separates):
-        return f"nothing that this machine can run tells {' / '.join(words(i).lower() for i in e.separates)} apart"
+        return f"no experiment that was rehearsed tells {' / '.join(words(i).lower() for i in e.separates)} apart"
     if e is not None:
         added = f", with {e.added}," if e.added else ""
         expected = "" if e.expected_odds is None else f"; expected odds {share(e.expected_odds)}"
