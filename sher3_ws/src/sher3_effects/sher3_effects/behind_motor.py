@@ -40,6 +40,6 @@ class BehindMotor(Page):
         return views[0].axis(site).mass > 0.0 and all(v.run.effort is not None for v in views)
 
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
-        """Return whether the mass of the load is above `LEAST_SHARE` of the axis' mass and below all of it."""
+        """Return whether the load's mass, first of (p,), is above `LEAST_SHARE` of the axis' mass and below all."""
         least = self.LEAST_SHARE * self.mass if np.isfinite(self.mass) else 0.0
         return bool(least < coefficients[0] < self.mass)

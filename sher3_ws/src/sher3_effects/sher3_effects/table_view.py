@@ -61,7 +61,7 @@ class Still:
         return None
 
     def inputs(self, actuator: str) -> Array:
-        """Return (g, k) quantities a static law could depend on; each kind says them."""
+        """Return (g, k) quantities a static law could depend on; each kind says them, else NotImplementedError."""
         raise NotImplementedError
 
 

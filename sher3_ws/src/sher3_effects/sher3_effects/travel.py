@@ -19,7 +19,7 @@ class Travel(NamedTuple):
     half: float
 
     def share(self, position: Array) -> Array:
-        """Return positions over half the travel, -1..1."""
+        """Return positions (n,) [m or rad] over half the travel, -1..1."""
         return (position - self.middle) / self.half
 
 
@@ -37,5 +37,5 @@ def over_travel(views: Sequence[AxisView], site: str, shape: Shape) -> list[Shap
 
 
 def share_of(position: Array, shape: Shape) -> Array:
-    """Return positions over half the travel that a shape holds, -1..1."""
+    """Return positions (n,) [m or rad] over half the travel that a shape holds, -1..1."""
     return Travel(shape["middle"], shape["half"]).share(position)

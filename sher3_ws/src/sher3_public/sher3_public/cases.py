@@ -49,7 +49,7 @@ class Case:
 
 
 def case_of_arrays(model: object, arrays: Sequence[Arrays], stated: Stated, tags: Any) -> Case:
-    """Return an arm of a model with its runs; raises InputError and MachineError as `diagnose` does."""
+    """Return an arm of a model with its runs, arrays (n, k); raises InputError and MachineError as `diagnose` does."""
     source = source_of(model)
     found = described(source, arrays, stated)
     return _case(found.data, found.tables, source, found.guesses, tags)

@@ -117,10 +117,11 @@ def columns_named(table: Mapping[str, Array], names: Sequence[str]) -> Array | N
 
 
 def arrays_of(time: Any, control: Any, position: Any, effort: Any, load: Any) -> list[Arrays]:
-    """Return the runs: each argument is an array, or a list of arrays, one for each run.
+    """Return the runs: each argument is an array (n,) or (n, k), or a list of such arrays, one for each run.
 
     Raises:
-        InputError: lists differ in length, or arrays in their number of samples.
+        InputError: lists differ in length, or arrays in their number of samples; time or position is missing, or an
+            array holds no numbers.
     """
     given = {"time": time, "control": control, "position": position, "effort": effort, "load": load}
     several = {name: list(x) for name, x in given.items() if is_several(x)}

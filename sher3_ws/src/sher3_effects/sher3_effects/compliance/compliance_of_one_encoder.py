@@ -64,10 +64,10 @@ class ComplianceBehindMotor(BehindMotor):
         return f"a spring below {rounded(stiffness, f'{force}/{position}')} ({max(paces):.2g} Hz) would show"
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Return frequency and damping, the mass of the load and the stiffness of its spring."""
+        """Return frequency [Hz] and damping, the mass (1,) of the load and the stiffness of its spring."""
         mass = float(coefficients[0])
         return {**shape, "load_mass": mass, "stiffness": mass * (2.0 * np.pi * shape["frequency"]) ** 2}
 
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
-        """Return whether the load is a fair share of the axis' mass, and its spring rings."""
+        """Return whether the load, coefficients (1,), is a fair share of the axis' mass, and its spring rings."""
         return super().admissible(shape, coefficients) and shape["damping"] < self.MOST_DAMPED

@@ -69,7 +69,10 @@ class StructuralCompliance(Page):
         return (Tolerated({"free": 0.0}, {"structural compliance": (robot.tolerances.compliance, "1")}),)
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Share of the paper's compliance; the springs where they were free, and what halves them if they stiffen."""
+        """Return the share of the paper's compliance, springs that were free, and what halves them if they stiffen.
+
+        Coefficients: the share (1,), or the springs (3,) along x [m/N] and about y and z [rad/(N m)].
+        """
         bend = {n: x for n, x in shape.items() if n == "stiffens"}
         if len(coefficients) == 1:
             return {"fraction": float(coefficients[0]), **bend}
@@ -77,7 +80,7 @@ class StructuralCompliance(Page):
         return {"fraction": share, **{n: float(c) for n, c in zip("xyz", coefficients, strict=True)}, **bend}
 
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
-        """Return whether every spring gives way to the force: no compliance is below zero by more than 2 %."""
+        """Return whether every spring gives way to the force: no compliance of (p,) is below -2 % of the largest."""
         return bool((coefficients >= -0.02 * np.abs(coefficients).max()).all())
 
 

@@ -61,7 +61,10 @@ class StructuralVibration(Page):
         return Signature(view.at_tip(columns))
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Frequency, damping, and participation with its direction: of one mode the principal one of its matrix."""
+        """Frequency, damping, and participation with its direction: of one mode the principal one of its matrix.
+
+        Coefficients: (3,) along x, y, z of {b}; of one mode (6,), the entries of its matrix as `PAIRS` has them.
+        """
         if shape["single"]:
             matrix = np.zeros((3, 3))
             for (i, j), c in zip(self.PAIRS, coefficients, strict=True):

@@ -49,7 +49,7 @@ class ToolBending(Page):
         return Signature({Channel("structure", "tip"): columns * softness(across, shape)})
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Compliance across the tool and slope per force; the force that halves them where the tool stiffens."""
+        """Return compliance across the tool and slope per force, (2,) [m/N, rad/N]; the force that halves them."""
         return {"compliance": float(coefficients[0]), "slope": float(coefficients[1]), **shape}
 
 

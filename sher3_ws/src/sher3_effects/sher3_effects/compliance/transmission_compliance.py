@@ -76,7 +76,7 @@ class TransmissionCompliance(Page):
         return Signature({Channel(self.stage, site): column(-run.to_grid(bend)), motor: column(-run.to_grid(back))})
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Stiffness and its inverse; the share of the axis' mass that the spring carries, and how it swings."""
+        """Return stiffness and its inverse, first of (p,); the share of the axis' mass it carries, how it swings."""
         c = float(coefficients[0])
         carried = {PLANT_NAMES[k]: float(shape[k]) for k in PLANT_NAMES if shape.get(k)}
         return {"stiffness": 1.0 / c if c else 0.0, "compliance": c, **carried}
@@ -157,7 +157,7 @@ class ComplianceOnAxis(TransmissionCompliance):
         return [] if "recorded" in shape else super().refine(shape)
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Return stiffness and compliance, and the frequency of a load that rings."""
+        """Return stiffness and compliance, of coefficients (p,), and the frequency [Hz] of a load that rings."""
         if "ringing" in shape:
             return {"frequency": shape["frequency"], "damping": shape["damping"]}
         more = {"frequency": shape["frequency"]} if shape["frequency"] else {}
@@ -166,7 +166,7 @@ class ComplianceOnAxis(TransmissionCompliance):
         return {**super().parameters(shape, coefficients), **slopes(shape, coefficients), **more}
 
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
-        """Return whether it is a spring whose load resists."""
+        """Return whether coefficients (p,) are of a spring whose load resists; a load that rings has none."""
         if "ringing" in shape:
             return shape["damping"] < MOST_DAMPED
         if "knee" in shape:
@@ -234,11 +234,11 @@ class ComplianceOfJoint(TransmissionCompliance):
         return Signature({Channel(self.stage, site): column(*(-x for x in pulls))})
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Return stiffness and compliance, and those beyond a knee."""
+        """Return stiffness and compliance, and those beyond a knee: coefficients (1,), with a knee (2,)."""
         return {**super().parameters(shape, coefficients), **slopes(shape, coefficients)}
 
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
-        """Return whether it is a spring on either side of the knee."""
+        """Return whether it is a spring, coefficients (1,), or (2,) on either side of a knee."""
         return bool((coefficients > 0.0).all() and is_shown(shape))
 
 

@@ -39,7 +39,7 @@ class ForceDrift(Page):
         return Signature({Channel("sensing", site): view.warmth[:, None, None] * np.eye(6)})
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Drift per component, and the largest force."""
+        """Return the drift (6,) per component [N/K, N m/K], and the size of that of the force [N/K]."""
         names = ("fx", "fy", "fz", "tx", "ty", "tz")
         return {
             "coefficient": float(np.linalg.norm(coefficients[:3])),

@@ -40,5 +40,5 @@ class PositionDrift(Page):
         return Signature({Channel(self.stage, site): column(passed)})
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Return the drift from the first row to the last, and the share of the test in which it settles."""
+        """Return the drift (1,) from the first row to the last, and the share of the test in which it settles."""
         return {"over_test": float(coefficients[0]), **shape}

@@ -93,12 +93,15 @@ class TableExpansion(Page):
         return Signature({Channel(self.stage, site): column(*parts)})
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Return the coefficient of expansion beyond that of the reading, and the place that stays where it is."""
+        """Return the coefficient of expansion beyond that of the reading, and the place that stays where it is.
+
+        Coefficients: that of the target (1,) [1/K]; where any place may be fixed, that of the warmth too (2,).
+        """
         a = float(coefficients[0])
         return {"coefficient": a, **({"rest": -float(coefficients[1]) / a if a else 0.0} if shape else {})}
 
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
-        """Return whether the place that stays lies in the travel, or half of it beyond: a bearing is near it."""
+        """Return whether the place that stays, of (2,), is in the travel or half of it beyond: a bearing is near it."""
         return not shape or abs(float(coefficients[1])) <= 2.0 * shape["half"] * abs(float(coefficients[0]))
 
 
@@ -119,12 +122,12 @@ class ExpansionOnAxis(TableExpansion):
         return Signature({Channel(self.stage, site): column(place * view.warmth, view.warmth)})
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Return the coefficient of expansion, and the position that does not move with the warmth."""
+        """Return the coefficient of expansion [1/K], and the position that does not move with the warmth, of (2,)."""
         a, b = map(float, coefficients)
         return {"coefficient": a, "rest": -b / a if a else 0.0}
 
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
-        """Return True: an axis may be clamped far outside of its travel."""
+        """Return True for any coefficients (2,): an axis may be clamped far outside of its travel."""
         return True
 
 

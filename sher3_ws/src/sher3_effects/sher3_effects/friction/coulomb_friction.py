@@ -132,13 +132,13 @@ class ServoStiction(CoulombFriction):
         return Signature({}, {Channel(self.stage, site): view.run.to_grid(-behind)[:, None]})
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Return friction over stiffness, and how late the servo is before it sticks."""
+        """Return friction over stiffness, and how late the servo is before it sticks [s]; of the shape, or of (1,)."""
         if "displacement" in shape:
             return super().parameters(shape, coefficients)
         return {"force": shape["force"], **({"late": shape["late"]} if shape["late"] else {})}
 
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
-        """Return whether friction resists; a play of positive width always does."""
+        """Return whether friction (1,) resists; a play of positive width, (0,), always does."""
         return "displacement" not in shape or super().admissible(shape, coefficients)
 
 

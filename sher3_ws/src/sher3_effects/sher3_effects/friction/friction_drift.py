@@ -63,7 +63,7 @@ class FrictionDrift(DryFriction):
         return Signature({Channel(self.stage, site): column(run.to_grid(z), run.to_grid(z * change))})
 
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
-        """Return whether the change exceeds a fifth of the level, and friction opposes the motion throughout."""
+        """Return whether the change (2,) exceeds a fifth of the level, and friction opposes the motion throughout."""
         marked = abs(coefficients[1]) > 0.2 * abs(coefficients[0])
         ends = [shape.get("coldest", 0.0), shape.get("warmest", 1.0)]
         levels = sorted(float(coefficients[0] + coefficients[1] * s) for s in ends)

@@ -56,12 +56,15 @@ class GearLoss(Page):
         return Signature({Channel(self.stage, site): column(lost, z) if shape["dry"] else column(lost)})
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Return the share of the load that is lost, the friction without load, and that at the mean load."""
+        """Return the share of the load that is lost, the friction without load, and that at the mean load.
+
+        Coefficients: the share (1,), with a friction without load two (2,).
+        """
         share, dry = float(coefficients[0]), float(coefficients[1]) if shape["dry"] else 0.0
         return {"share": share, **({"force": dry} if shape["dry"] else {}), "usual": dry + share * shape["load"]}
 
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
-        """Return whether less than all of the load is lost, and friction resists."""
+        """Return whether less than all of the load, the first of (p,), is lost, and friction resists."""
         return bool(0.0 < coefficients[0] < 1.0 and (not shape["dry"] or coefficients[1] > 0.0))
 
 

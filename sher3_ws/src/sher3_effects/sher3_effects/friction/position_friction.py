@@ -62,7 +62,7 @@ class PositionFriction(DryFriction):
         return Signature({Channel(self.stage, site): column(*parts)})
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Mean, amplitude of the variation and its wavelength."""
+        """Return mean and amplitude of the variation, of the first three of (5,), and its wavelength."""
         return {
             "force": float(coefficients[0]),
             "amplitude": float(np.hypot(coefficients[1], coefficients[2])),
@@ -70,7 +70,7 @@ class PositionFriction(DryFriction):
         }
 
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
-        """Return whether the variation exceeds a fifth of the mean, and friction can be positive everywhere."""
+        """Return whether the variation of (5,) exceeds a fifth of the mean, and friction can be positive everywhere."""
         marked = np.hypot(coefficients[1], coefficients[2]) > 0.2 * abs(coefficients[0])
         return bool(coefficients[0] > 0.0 and marked and least_of(coefficients) >= -self.SLACK * coefficients[0])
 

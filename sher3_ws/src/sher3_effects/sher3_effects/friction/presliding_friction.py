@@ -44,7 +44,7 @@ class PreslidingFriction(DryFriction):
     finer = {"displacement": (0.7, 0.85, 1.2, 1.4)}
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Force, displacement and the initial stiffness they give."""
+        """Return the force (1,), the displacement and the initial stiffness they give."""
         force = float(coefficients[0])
         return {"force": force, "displacement": shape["displacement"], "stiffness": force / shape["displacement"]}
 

@@ -73,7 +73,7 @@ class StribeckFriction(DryFriction):
         return Signature({Channel(self.stage, site): column(view.run.to_grid(z), view.run.to_grid(hump))})
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Sliding and static force and the Stribeck velocity."""
+        """Return sliding and static force, of coefficients (2,), and the Stribeck velocity."""
         force = float(coefficients[0])
         return {
             "force": force,
@@ -82,7 +82,7 @@ class StribeckFriction(DryFriction):
         }
 
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
-        """Friction resists and falls with speed, markedly."""
+        """Return whether friction, coefficients (2,), resists and falls with speed, markedly."""
         return bool(coefficients[0] >= 0.0 and coefficients[1] > 0.1 * coefficients[0])
 
 
@@ -112,7 +112,7 @@ class StribeckOnAxis(StribeckFriction):
         return [{"stribeck_velocity": v, **shape} for v in found for shape in sliding]
 
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
-        """Return whether friction resists, falls with speed, and holds at rest less than `HIGHEST` times sliding."""
+        """Return whether friction (2,) resists, falls with speed, and is at rest less than `HIGHEST` times sliding."""
         sliding, more = map(float, coefficients)
         return super().admissible(shape, coefficients) and sliding + more < self.HIGHEST * sliding
 

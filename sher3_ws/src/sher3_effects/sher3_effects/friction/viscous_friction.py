@@ -61,7 +61,7 @@ class ViscousOnAxis(ViscousFriction):
         return ViscousOnAxis(axis.viscous)
 
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
-        """Return whether the friction, the stated and the found coefficient together, resists."""
+        """Return whether the friction, the stated and the found coefficient (1,) together, resists."""
         return bool(coefficients[0] > -self.nominal)
 
 

@@ -36,7 +36,7 @@ class BaseTilt(Page):
         return Signature(view.at_tip(np.stack(change, axis=-1)))
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Angle and its components."""
+        """Return the angle and its components (2,) [rad]."""
         return {"angle": float(np.hypot(*coefficients)), "x": float(coefficients[0]), "y": float(coefficients[1])}
 
 

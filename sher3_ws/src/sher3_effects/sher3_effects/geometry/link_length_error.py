@@ -57,7 +57,7 @@ class LinkLengthError(Page):
         return (Tolerated({"apart": 1.0}, dict.fromkeys(names, limit)),)
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Mean length error of the two links and half their difference."""
+        """Return the mean length error of the two links and half their difference [m], coefficients (1,) or (2,)."""
         return {n: float(c) for n, c in zip(("length", "difference"), coefficients, strict=False)}
 
 
@@ -83,7 +83,7 @@ class JointPlace(Page):
         return Signature({self.channels(site)[0]: np.stack(parts, axis=-1)})
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Return the shifts along the axes of the joint frame, m."""
+        """Return the shifts (3,) [m] along the axes of the joint frame."""
         return dict(zip("xyz", map(float, coefficients), strict=True))
 
     def unit(self, name: str, site: str, rotary: bool) -> str:

@@ -84,7 +84,7 @@ class PlatformGeometryError(Page):
         return [Tolerated({"ball": b}, limits) for b, limits in names.items()]
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Offsets of the platform's joint, or of those of every leg."""
+        """Return the offsets (p,) [m] of the platform's joint, or of those of every leg."""
         names = {1: ("radius",), len(OF_EVERY_LEG): OF_EVERY_LEG}.get(len(coefficients), OF_A_LEG)
         return {n: float(c) for n, c in zip(names, coefficients, strict=False)}
 

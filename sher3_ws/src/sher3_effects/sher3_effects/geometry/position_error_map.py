@@ -54,7 +54,7 @@ class PositionErrorMap(Page):
         return Signature({Channel(self.stage, site): np.stack(columns, axis=-1)[:, None, :]})
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Return the range of the map, and the number of the target at which it is largest."""
+        """Return the range of the map of (p,), and the number of the target at which it is largest."""
         whole = bent_lines(len(coefficients), shape) @ coefficients
         return {"range": float(np.ptp(whole)), "largest_target": float(np.argmax(np.abs(whole)) + 1)}
 

@@ -40,7 +40,7 @@ class RailTilt(Page):
         return (Tolerated({}, {f"rail of {site}, {a}": (robot.tolerances.rail, "rad") for a in "xy"}),)
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Angle and its components."""
+        """Return the angle and its components (2,) [rad]."""
         return {"angle": float(np.hypot(*coefficients)), "x": float(coefficients[0]), "y": float(coefficients[1])}
 
     def to_simulator(self, actuator: str, values: Values, robot: Robot) -> list[Part]:

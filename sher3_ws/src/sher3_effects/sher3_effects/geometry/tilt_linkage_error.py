@@ -63,7 +63,7 @@ class TiltLinkageError(Page):
         ]
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Length error and the member it is of."""
+        """Return the length error (1,) [m] and the member it is of."""
         return {"length": float(coefficients[0]), **shape}
 
     def to_simulator(self, actuator: str, values: Values, robot: Robot) -> list[Part]:

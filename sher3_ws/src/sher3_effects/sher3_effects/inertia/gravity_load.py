@@ -56,7 +56,7 @@ class GravityLoad(Page):
         return (Tolerated({"constant": 0.0}, {f"gravity load of {site}": (robot.tolerances.gravity_load, "1")}),)
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Ratio of the extra weight to the modelled one, or the extra force."""
+        """Return coefficients (1,) as the ratio of the extra weight to the modelled one, or as the extra force."""
         return {"force" if shape["constant"] else "relative": float(coefficients[0])}
 
     def to_simulator(self, actuator: str, values: Values, robot: Robot) -> list[Part]:
@@ -114,7 +114,10 @@ class GravityOnAxis(GravityLoad):
         return Signature({Channel(self.stage, site): column(*arm.T, *beside)})
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Return the largest weight, the position at which the axis hangs down, and a force beside it."""
+        """Return the largest weight, the position at which the axis hangs down, and a force beside it.
+
+        Coefficients: (1,) as of `GravityLoad`; else those of sine and cosine (2,), with a force beside them (3,).
+        """
         if shape["constant"] < 2.0:
             return super().parameters(shape, coefficients)
         sine, cosine, *beside = map(float, coefficients)

@@ -75,13 +75,13 @@ class LinkInertia(Page):
         return Signature(fixed={c: x @ changes for c, x in self.forces(view, site, shape).items()})
 
     def forces(self, view: Any, site: str, shape: Shape) -> dict[Channel, Array]:
-        """Return on every joint that carries the link the force per unit of the parameters that the shape names."""
+        """Return on every joint that carries the link the force (g, 1, p) per unit of the p parameters of the shape."""
         arm: ArmMotionView = view
         columns = [self.NAMES.index(name) for name in self.numbers(shape)]
         return {Channel(self.stage, joint): x[:, None, columns] for joint, x in arm.per_inertial(site).items()}
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Return the change of mass times centre, and every number that was told."""
+        """Return the change of mass times centre [kg m], and every number of the shape; coefficients (p,) add none."""
         each = self.numbers(shape)
         moments = [each[name] for name in self.MOMENTS if name in each]
         return {**({"change": float(np.linalg.norm(moments))} if moments else {}), **each}

@@ -63,7 +63,10 @@ class PayloadMass(Page):
         return (Tolerated({"weight": 0.0}, {f"mass of {site}": (limit, self.unit("mass", site, site == "roll"))}),)
 
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
-        """A payload adds mass: where weight is missing, it is the weight that is off; an axis alone may be lighter."""
+        """Return whether the mass, coefficients (1,), is above zero; of a shape without weight any is.
+
+        A payload adds mass: where weight is missing, it is the weight that is off; an axis alone may be lighter.
+        """
         return not shape["weight"] or bool(coefficients[0] > 0.0)
 
 
@@ -91,7 +94,7 @@ class MassOnAxis(PayloadMass):
         return {"mass": (-shape["stated"], np.inf)}
 
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
-        """Return whether a mass is left: none is below zero."""
+        """Return whether a mass is left, the stated one and that of (1,) [kg or kg m^2]: none is below zero."""
         return bool(shape["stated"] + coefficients[0] > 0.0)
 
 
@@ -130,13 +133,13 @@ class PayloadOnLink(PayloadMass):
         return Signature({Channel(self.stage, joint): x[:, None, :] for joint, x in forces.items()})
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Return the mass and its centre."""
+        """Return the mass [kg] and its centre [m], of coefficients (4,): mass, and mass times centre [kg m]."""
         mass = float(coefficients[0])
         centre = coefficients[1:] / mass if mass else np.zeros(3)
         return {"mass": mass, **{name: float(c) for name, c in zip("xyz", centre, strict=True)}}
 
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
-        """Return whether mass is added, near the link that carries it."""
+        """Return whether coefficients (4,) [kg, kg m] add mass, near the link that carries it."""
         mass = float(coefficients[0])
         return mass > 0.0 and bool(np.linalg.norm(coefficients[1:]) < self.FURTHEST * mass)
 

@@ -93,7 +93,10 @@ class Backlash(Page):
         return float(np.clip(2.0 * first / width, -1.0, 1.0))
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Width of the gap, travel lost between both directions, and that over which a load leaves its flank."""
+        """Return width of the gap, travel lost between both directions, and that over which a load leaves its flank.
+
+        All of them are of the shape; there are no coefficients, (0,).
+        """
         more = {"release": shape["release"]} if "release" in shape else {}
         return {"width": shape["width"], "lost": shape["width"], **more}
 
@@ -164,7 +167,7 @@ class BacklashOnAxis(Backlash):
         return Signature({}, {Channel(self.stage, site): run.to_grid(lag)[:, None]})
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Return the width of the gap."""
+        """Return the width of the gap, of the shape; where a known force tells the flank, coefficients (1,)."""
         return {"width": float(coefficients[0]) if "soft" in shape else shape["width"]}
 
     def start(self, view: AxisView, site: str, width: float) -> float:
@@ -177,7 +180,7 @@ class BacklashOnAxis(Backlash):
         return float(np.clip(2.0 * first / width, -1.0, 1.0))
 
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
-        """Return whether the load gives way to the force."""
+        """Return whether the load gives way to the force: coefficients (1,) above zero; without one, True."""
         return "soft" not in shape or bool(coefficients[0] > 0.0)
 
     def measured(self, views: Sequence[AxisView], site: str, shape: Shape) -> Mapping[str, Measured]:

@@ -79,13 +79,13 @@ class BacklashBehindMotor(BehindMotor):
         return Signature({self.channels(site)[0]: column(*(run.to_grid(x[:, None])[:, 0] for x in parts))})
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Return the width, and the mass and the friction behind it."""
+        """Return the width, and the mass and the friction behind it: coefficients (2,), with a braking (1,)."""
         mass = float(coefficients[0])
         friction = mass * shape["braking"] if "braking" in shape else float(coefficients[1])
         return {"width": shape["width"], "load_mass": mass, "load_friction": friction}
 
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
-        """Return whether the load is a fair share of the axis' mass, and its friction resists."""
+        """Return whether the load, the first of (p,), is a fair share of the axis' mass, and its friction resists."""
         return super().admissible(shape, coefficients) and bool((coefficients[1:] >= 0.0).all())
 
 
@@ -136,5 +136,5 @@ class BacklashBeforeEncoder(Page):
         return self.STICKS.signature(view, site, shape)
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Return the width, and how late the servo is before the gap."""
+        """Return the width, and how late the servo is before the gap [s]; there are no coefficients, (0,)."""
         return {"width": 2.0 * shape["force"], **({"late": shape["late"]} if shape["late"] else {})}

@@ -84,13 +84,13 @@ class JointClearance(Page):
         return Signature(view.at_tip(0.5 * change))
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Clearance: where the direction decides, the travel that crosses it; else the change of length."""
+        """Return the clearance: where direction decides, the travel that crosses it; else the mean size of (p,)."""
         if shape["by_load"]:
             return {"clearance": float(np.abs(coefficients).mean())}
         return {"clearance": shape["reach"]}
 
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
-        """Return whether what has play lags its slider, by no more than a gap of that width lets it."""
+        """Return whether what has play lags its slider, by the first of (p,), no more than a gap of that width lets."""
         if shape["by_load"]:
             return True
         return bool(-self.WIDEST * shape["reach"] <= coefficients[0] <= 0.0)

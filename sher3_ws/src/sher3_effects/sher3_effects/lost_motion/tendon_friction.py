@@ -73,7 +73,10 @@ class TendonFriction(Page):
         return Signature({Channel(self.stage, site): column(-run.to_grid(z), -run.to_grid(z * x))})
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Return stiffness and wrap, or width in the middle of the travel, its growth to the end, and displacement."""
+        """Return stiffness and wrap, or width in the middle of the travel, its growth to the end, and displacement.
+
+        Coefficients: the compliance (1,) of a tendon with a wrap; else half the width, and how it grows (2,).
+        """
         first = float(coefficients[0])
         if "wrap" in shape:
             return {"stiffness": 1.0 / first if first else 0.0, "wrap": shape["wrap"]}
@@ -81,7 +84,7 @@ class TendonFriction(Page):
         return {"width": 2.0 * first, "growth": growth, "displacement": shape["displacement"]}
 
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
-        """Return whether the tendon gives way, or the loop is one at both ends and grows from one of them."""
+        """Return whether the tendon (1,) gives way, or the loop (2,) is one at both ends and grows from one of them."""
         first = float(coefficients[0])
         if "wrap" in shape:
             return first > 0.0

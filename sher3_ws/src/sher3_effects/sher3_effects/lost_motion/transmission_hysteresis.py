@@ -48,12 +48,12 @@ class TransmissionHysteresis(Page):
         return Signature({Channel(self.stage, site): column(-z)})
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Half the width of the loop and its displacement; `width` is the whole loop."""
+        """Return half the width of the loop (1,) and its displacement; `width` is the whole loop."""
         a = float(coefficients[0])
         return {"amplitude": a, "width": 2.0 * a, "displacement": shape["displacement"]}
 
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
-        """The load lags behind, and by less than the stroke over which the lag builds up."""
+        """Return whether the load lags, by (1,), and by less than the stroke over which the lag builds up."""
         return bool(0.0 < coefficients[0] < shape["displacement"])
 
 
@@ -88,13 +88,13 @@ class HysteresisOnAxis(TransmissionHysteresis):
         return Signature({Channel(self.stage, site): column(run.to_grid(z[:, None])[:, 0])})
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Return half the width of the loop, the whole, and the path or the force that it builds up over."""
+        """Return half the width of the loop (1,), the whole, and the path or the force that it builds up over."""
         a = float(coefficients[0])
         over = {"reach": shape["reach"]} if "reach" in shape else {"displacement": shape["displacement"]}
         return {"amplitude": a, "width": 2.0 * a, **over}
 
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
-        """Return whether the load lags, by less than the stroke over which the lag builds up."""
+        """Return whether the load lags, by (1,), over a path by less than the stroke over which the lag builds up."""
         return bool(coefficients[0] > 0.0) if "reach" in shape else super().admissible(shape, coefficients)
 
 

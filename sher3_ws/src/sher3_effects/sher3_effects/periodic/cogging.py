@@ -50,7 +50,7 @@ class Cogging(Page):
         return Signature({Channel(self.stage, site): column(*(view.run.to_grid(w) for w in waves))})
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Amplitude, order and phase."""
+        """Return amplitude, order and phase [rad], of the first two of (p,)."""
         return sine_of(shape, coefficients)
 
 

@@ -44,14 +44,17 @@ class EncoderEccentricity(Page):
         return Signature({Channel("transmission", site): view.run.to_grid(waves)[:, None, :], **view.at_tip(tip)})
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Amplitude and phase."""
+        """Return amplitude and phase [rad], of the first two of (p,)."""
         return {
             "amplitude": float(np.hypot(coefficients[0], coefficients[1])),
             "phase": float(np.arctan2(coefficients[1], coefficients[0])),
         }
 
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
-        """Return whether once per lead is the larger wave: the second belongs to a code disc that is tilted as well."""
+        """Return whether once per lead is the larger wave of coefficients (2,) or (4,).
+
+        The second belongs to a code disc that is tilted as well.
+        """
         return len(coefficients) < 4 or bool(np.hypot(*coefficients[:2]) > np.hypot(*coefficients[2:]))
 
 
@@ -81,7 +84,7 @@ class EccentricityOnAxis(EncoderEccentricity):
         return np.stack([f(n * turn) for n in orders for f in (np.sin, np.cos)], axis=-1)
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Return amplitude, phase, and the turn where the load's turn counts."""
+        """Return amplitude and phase [rad], of the first two of (p,), and the turn where the load's turn counts."""
         turn = {"turn": shape["turn"]} if "turn" in shape else {}
         return {**super().parameters(shape, coefficients), **turn}
 

@@ -74,7 +74,7 @@ class TransmissionRipple(Page):
         return (Tolerated({"periods_per_rev": 1.0, "side": 0.0}, waves),)
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Amplitude, order and phase."""
+        """Return amplitude, order and phase [rad], of the first two of (p,)."""
         return sine_of(shape, coefficients)
 
 
@@ -109,7 +109,7 @@ class RippleOfAnyPeriod(TransmissionRipple):
         return Signature({Channel(self.stage, site): column(*waves)})
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Return amplitude, the travel of a period and phase."""
+        """Return amplitude, the travel of a period and phase [rad], of coefficients (2,)."""
         return sine_of(shape, coefficients, "period")
 
 
@@ -136,7 +136,7 @@ class TableRipple(Page):
         return Signature({Channel(self.stage, site): column(np.sin(turn), np.cos(turn))})
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Return amplitude, order and phase."""
+        """Return amplitude, order and phase [rad], of coefficients (2,)."""
         amplitude, phase = np.hypot(*coefficients), np.arctan2(coefficients[1], coefficients[0])
         return {"amplitude": float(amplitude), "phase": float(phase), "periods_per_rev": shape["periods_per_rev"]}
 

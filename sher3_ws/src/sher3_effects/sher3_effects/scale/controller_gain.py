@@ -59,7 +59,7 @@ class GainOfLaw(ControllerGain):
         return Signature({self.channels(site)[0]: column(view.run.to_grid((chosen * free)[:, None])[:, 0])})
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Return the relative change, named after its part."""
+        """Return the relative change (1,), named after its part."""
         part = int(shape["part"])
         return {"relative" if part < 0 else f"{self.PARTS[part]}_relative": float(coefficients[0])}
 

@@ -43,11 +43,11 @@ class EncoderScale(Page):
         return Signature({Channel("transmission", site): read[:, None, :], **view.at_tip(tip)})
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Ratio error."""
+        """Return the ratio error: the slope of the straight line nearest to the broken one of (p,)."""
         return {"relative": mean_ratio(coefficients)}
 
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
-        """Return whether the scale varies by less than it is off."""
+        """Return whether the scale of coefficients (p,) varies by less than it is off."""
         return gentle(coefficients)
 
 

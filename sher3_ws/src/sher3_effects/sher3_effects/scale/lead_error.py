@@ -51,11 +51,11 @@ class LeadError(Page):
         return (Tolerated({}, {f"ratio of {site}": (robot.tolerances.ratio, "1")}),)
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Ratio error."""
+        """Return the ratio error: the slope of the straight line nearest to the broken one of (p,)."""
         return {"relative": mean_ratio(coefficients)}
 
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
-        """Return whether it is an error of a lead; more is a wrong scale, or an encoder that does not follow."""
+        """Return whether (p,) is an error of a lead; more is a wrong scale, or an encoder that does not follow."""
         return bool(abs(coefficients[0]) < self.LARGEST) and gentle(coefficients)
 
 

@@ -43,7 +43,7 @@ class ReferenceScale(Page):
         return Signature({Channel(self.stage, site): column(-asked[:, 0])})
 
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
-        """Return whether the share is more than rounding, and the axis still follows what it is asked."""
+        """Return whether the share (1,) is more than rounding, and the axis still follows what it is asked."""
         return bool(self.LEAST < abs(coefficients[0]) < self.LARGEST)
 
     def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
@@ -51,5 +51,5 @@ class ReferenceScale(Page):
         return [{}] if all(v.run.reference is not None for v in views) else []
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Return the share by which it goes further or faster than asked."""
+        """Return the share (1,) by which it goes further or faster than asked."""
         return {"relative": float(coefficients[0])}

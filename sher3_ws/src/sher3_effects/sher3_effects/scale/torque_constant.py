@@ -49,12 +49,12 @@ class TorqueConstant(Page):
         return (Tolerated({}, {f"torque constant of {site}": (robot.tolerances.torque_constant, "1")}),)
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Force over reported effort, minus 1."""
+        """Return force over reported effort, minus 1: c / (1 - c) of coefficients (1,)."""
         c = float(coefficients[0])
         return {"relative": c / (1.0 - c)}
 
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
-        """Within a factor of three either way."""
+        """Return whether the ratio that (1,) stands for is within a factor of three either way."""
         return bool(-2.0 < coefficients[0] < 0.67)
 
 

@@ -44,5 +44,5 @@ class UnstatedTerm(Page):
         return Signature({Channel(self.stage, site): column(*parts)})
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Return the size of the term, in units of the command."""
+        """Return the size of the term, the first of (p,), in units of the command."""
         return {self.TERMS[int(shape["term"])]: float(coefficients[0])}

@@ -26,7 +26,10 @@ def lines(position: Array, shape: Shape) -> list[Array]:
 
 
 def gentle(coefficients: Array) -> bool:
-    """Return whether no node is off the straight line by more than `MOST` times its value at the end of the travel."""
+    """Return whether no node is off the straight line by more than `MOST` times its value at the end of the travel.
+
+    The coefficients (p,) are those of the columns of `lines`.
+    """
     return bool(np.abs(coefficients[1:]).max(initial=0.0) <= MOST * abs(coefficients[0]))
 
 

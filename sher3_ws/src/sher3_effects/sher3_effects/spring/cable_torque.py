@@ -53,7 +53,7 @@ class CableTorque(Page):
         return Signature({Channel(self.stage, site): column(np.ones_like(x), x, x**2, x**3)})
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Return by how much the force differs over the travel, the travel, and the force of each power at its end."""
+        """Return the span of the force over the travel, the travel, and the force (4,) of each power at its end."""
         names = ("constant", "linear", "square", "cubic")
         span = float(np.ptp(np.polynomial.polynomial.polyval(self.ALONG, coefficients)))
         return {"span": span, **shape, **{name: float(c) for name, c in zip(names, coefficients, strict=True)}}

@@ -43,7 +43,7 @@ class SpringTorque(Page):
         return Signature({Channel(self.stage, site): column(q, np.ones_like(q))})
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Return the stiffness, and the position at which the spring is relaxed."""
+        """Return the stiffness, and the position at which the spring is relaxed, of coefficients (2,)."""
         stiffness, at_zero = map(float, coefficients)
         return {"stiffness": stiffness, "rest": -at_zero / stiffness if stiffness else 0.0}
 
@@ -80,14 +80,14 @@ class SpringOnAxis(SpringTorque):
         return Signature({Channel(self.stage, site): column(x, np.ones_like(x), *cube)})
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Return the stiffness, the position at which the spring is relaxed, and the stiffness at the ends."""
+        """Return stiffness, the position at which the spring is relaxed, (2,), and the stiffness at the ends, (3,)."""
         linear, middle, *cube = map(float, coefficients)
         place = _relaxed(linear, middle, *cube) if linear else 0.0
         out = {"stiffness": linear / shape["half"], "rest": shape["middle"] + shape["half"] * place}
         return {**out, **({"stiffness_at_end": (linear + 3.0 * cube[0]) / shape["half"]} if cube else {})}
 
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
-        """Return whether the spring pulls back and does not soften; it may be strained all over the travel."""
+        """Return whether the spring (p,) pulls back and does not soften; it may be strained all over the travel."""
         linear, _, cube = (*map(float, coefficients), 0.0)[:3]
         return linear > 0.0 and cube >= 0.0
 

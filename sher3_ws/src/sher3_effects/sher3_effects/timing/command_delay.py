@@ -84,7 +84,7 @@ class DelayOfLaw(CommandDelay):
         return Signature({}, {self.channels(site)[0]: view.run.to_grid((late - law.command)[:, None])})
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Return the delay."""
+        """Return the delay [s] of the shape; there are no coefficients, (0,)."""
         return {"reference_delay" if shape["of_reference"] else "delay": shape["delay"]}
 
 
@@ -119,7 +119,7 @@ class DelayOfServo(CommandDelay):
         return Signature({}, {self.channels(site)[0]: view.run.to_grid(own[:, None])})
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Return the delay of the reference."""
+        """Return the delay of the reference [s], of the shape; there are no coefficients, (0,)."""
         return {"reference_delay": shape["delay"]}
 
 

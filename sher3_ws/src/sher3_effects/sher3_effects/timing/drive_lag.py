@@ -148,14 +148,14 @@ class ServoLag(DriveLag):
         return ([{**shape, "balance": fewer}] if fewer == 1.0 else late) if fewer else []
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Return the time constant, and the damping of a filter of second order or the numbers of a balance."""
+        """Return the time constant, and the damping of a filter of second order or the numbers (p,) of a balance."""
         if "balance" not in shape:
             return dict(shape)
         numbers = dict(zip(self.BALANCE, map(float, coefficients), strict=False))
         return {**numbers, **{name: shape[name] for name in ("delay",) if name in shape}}
 
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
-        """Return whether a filter of second order is one, and every number of a balance is above zero.
+        """Return whether a filter of second order is one, and every number (p,) of a balance is above zero.
 
         A loop that looks at the error's slope answers earlier for it; one that answered later would have a dead time.
         """

@@ -58,7 +58,7 @@ class EffortLag(DriveLag):
         return [float(least * self.STEP**k) for k in range(count)]
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Return the time constant, or the dead time."""
+        """Return the time constant, or the dead time [s], of the shape; coefficients (p,) tell neither."""
         return dict(shape)
 
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
@@ -73,7 +73,7 @@ class EffortLag(DriveLag):
         return Signature(heavier, {channel: run.to_grid((given - acting)[:, None])})
 
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
-        """Return whether the mass is about the identified one: a lag and a mass may change places."""
+        """Return whether the mass, off by a share (p,), is about the identified: a lag and a mass may change places."""
         return all(abs(share) < self.HEAVIER for share in coefficients)
 
     def acting(self, given: Array, clock: Array, period: float, shape: Shape) -> Array:

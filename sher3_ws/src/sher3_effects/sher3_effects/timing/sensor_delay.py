@@ -87,12 +87,12 @@ class SensorDelay(Page):
         return Signature({channel: column(run.to_grid(slope[:, None])[:, 0])}, {channel: fixed})
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Return the delay, named after the reading that is late."""
+        """Return the delay [s], the shape's and the rest (1,) [s], named after the reading that is late."""
         name = "effort_delay" if shape["of_effort"] else "load_delay"
         return {name: shape["delay"] + float(coefficients[0])}
 
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
-        """Return whether the fitted rest is between `REST` times the searched delay.
+        """Return whether the fitted rest (1,) [s] is between `REST` times the searched delay.
 
         Their sum must not be shorter than the least delay.
         """
@@ -120,7 +120,7 @@ class TimedEffort(SensorDelay):
         return Signature({}, found.fixed)
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Return the delay."""
+        """Return the delay [s] of the shape; there are no coefficients, (0,)."""
         return {"effort_delay": shape["delay"]}
 
     def measured(self, views: Sequence[AxisView], site: str, shape: Shape) -> dict[str, Measured]:
@@ -128,5 +128,5 @@ class TimedEffort(SensorDelay):
         return {"effort_delay": Measured(shape["estimate"], shape["error"])}
 
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
-        """Return True: what the delay is was settled before."""
+        """Return True: what the delay is was settled before; there are no coefficients, (0,)."""
         return True

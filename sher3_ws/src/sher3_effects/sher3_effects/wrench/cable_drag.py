@@ -94,7 +94,10 @@ class CableDrag(Page):
         return Signature({Channel("sensing", "force_sensor"): columns})
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Stiffness and force of the hysteresis; the largest component, in N per rad, on the force sensor."""
+        """Return preload, stiffness and force of hysteresis, (p,); on the force sensor the largest component.
+
+        There the stiffness is in N per rad.
+        """
         if len(coefficients) >= AT_SENSOR:
             forces = np.abs(coefficients.reshape(-1, _pulled(shape))[:, :3])
             out = {"stiffness": float(forces[:2].max())}
@@ -104,7 +107,7 @@ class CableDrag(Page):
         return {**out, "force": rest[0]} if shape["stroke"] else out
 
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
-        """Return whether a cable on an axis pulls back everywhere, never softens, and drags.
+        """Return whether a cable (p,) on an axis pulls back everywhere, never softens, and drags.
 
         On the force sensor its pull may have any sign.
         """

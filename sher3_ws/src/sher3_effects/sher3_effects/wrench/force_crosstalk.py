@@ -67,7 +67,7 @@ class ForceCrosstalk(Page):
         return (Tolerated({"source": -2.0, "target": -2.0}, limits),)
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Largest pair of forces; where all were free, each of them: the axis that reads, then the loaded axis."""
+        """Return the largest pair of forces of (p,); if all were free, each: the axis that reads, the loaded axis."""
         k = int(np.argmax(np.abs(coefficients[: len(self.FORCES)])))
         j, i = self.FORCES[k] if len(coefficients) > 1 else (shape["source"], shape["target"])
         out = {"coefficient": float(coefficients[k]), "source": float(j), "target": float(i)}

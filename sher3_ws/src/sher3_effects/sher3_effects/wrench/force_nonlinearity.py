@@ -36,7 +36,7 @@ class ForceNonlinearity(Page):
         return Signature({Channel(self.stage, site): column(*curves(view.share)[: round(shape["order"]) - 1])})
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Return the largest deviation from the line through both ends, with its sign, and the order."""
+        """Return the largest deviation of curves (p,) from the line through both ends, with its sign, and the order."""
         whole = sum(c * x for c, x in zip(coefficients, curves(np.linspace(0.0, 1.0, 101)), strict=False))
         return {"largest": float(whole[np.argmax(np.abs(whole))]), "order": shape["order"]}
 

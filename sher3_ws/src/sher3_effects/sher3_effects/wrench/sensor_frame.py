@@ -47,7 +47,7 @@ class SensorFrame(Page):
         return Signature({channel: columns}, {channel: wrench - view.wrench(0)})
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Return the number of the frame, and the further turn of the readings about its axes."""
+        """Return the number of the frame, and the further turn of the readings [rad]: the shape's and (3,)."""
         turned = {n: shape.get(n, 0.0) + float(c) for n, c in zip(("rx", "ry", "rz"), coefficients, strict=True)}
         return {"frame": shape["frame"], **turned}
 
@@ -56,7 +56,7 @@ class SensorFrame(Page):
         return view.frame_in_words(round(values["frame"]), [values[name] for name in ("rx", "ry", "rz")])
 
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
-        """Return whether the further turn is small: what is larger is another frame of the list."""
+        """Return whether the further turn (3,) [rad] is small: what is larger is another frame of the list."""
         return bool(np.abs(coefficients).max() < self.SMALL)
 
     FURTHEST = 1.1

@@ -52,7 +52,7 @@ class ToolGravity(Page):
         return (Tolerated({"free_com": 0.0}, {"tool mass": (robot.tolerances.tool_mass, "kg")}),)
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Extra mass; with a free centre the extra first moment."""
+        """Return the extra mass [kg], (1,); with a free centre, (4,), the extra first moment [kg m] too."""
         names = ("mass", "com_x", "com_y", "com_z")[: len(coefficients)]
         return {n: float(c) for n, c in zip(names, coefficients, strict=True)}
 
@@ -77,7 +77,7 @@ class SensorLoad(Page):
         return [{"stated": views[0].mass}]
 
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
-        """Return whether a load is left: no mass is below zero."""
+        """Return whether a load is left, the stated mass and the first of (4,) [kg] together: none is below zero."""
         return bool(shape["stated"] + coefficients[0] >= 0.0)
 
     def signature(self, view: SensorView, site: str, shape: Shape) -> Signature:
@@ -88,7 +88,7 @@ class SensorLoad(Page):
         return Signature({Channel(self.stage, site): columns})
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Return the extra mass and its extra first moment."""
+        """Return the extra mass [kg] and its extra first moment [kg m], coefficients (4,)."""
         return dict(zip(("mass", "com_x", "com_y", "com_z"), map(float, coefficients), strict=True))
 
     def in_words(self, view: SensorView, values: Mapping[str, float]) -> str:

@@ -30,7 +30,7 @@ def check_degrees(
     drives: Mapping[str, Driven],
     guesses: list[str],
 ) -> None:
-    """Raise InputError where the model explains the efforts far better with angles in degrees.
+    """Raise InputError where the model explains the efforts far better with angles (n, k) in degrees.
 
     Efforts in a unit of their own, such as those before a gear, are in proportion to what the model needs in radians.
     They do not speak for degrees.

@@ -35,7 +35,7 @@ class Described:
 
 
 def described(source: Source, runs: Sequence[Arrays], stated: Stated) -> Described:
-    """Describe the joints of an arm.
+    """Describe the joints of an arm from runs: positions (n, k), and what was recorded beside them.
 
     Raises:
         InputError: the arrays do not fit the joints of the model, or cannot be what they would be taken for.
@@ -87,7 +87,7 @@ def described(source: Source, runs: Sequence[Arrays], stated: Stated) -> Describ
 def without_followers(
     source: Source, names: Sequence[str], controls: Sequence[int | None], runs: Sequence[Arrays], guesses: list[str]
 ) -> tuple[list[str], list[int | None], list[Arrays]]:
-    """Return joints, their controls and runs without the joints that follow others of them."""
+    """Return joints, their controls and runs, arrays (n, k), without the joints that follow others of them."""
     led = source.bodies.follow(names, guesses)
     kept = [i for i, name in enumerate(names) if name not in led]
 

@@ -41,7 +41,7 @@ def simulated(
     stated: bool | None,
     guesses: list[str],
 ) -> bool:
-    """Return whether the efforts are a simulator's own.
+    """Return whether the efforts (n, k) are a simulator's own.
 
     As stated; else where half of them or more are those of their drives' laws, since a gain may be what is wrong of
     some; without controls, where half of the joints move beyond the model's inertia what a step of its integrator adds.

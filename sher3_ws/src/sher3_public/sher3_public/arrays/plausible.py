@@ -72,14 +72,14 @@ def control_of(name: str, control: Array, position: Array, drive: Drive) -> None
 
 
 def infinite(runs: Sequence[Arrays]) -> list[str]:
-    """Return a sentence on controls that are infinite, as of a controller that failed; none where all are finite."""
+    """Return a sentence on infinite controls (n, m), as of a controller that failed; none where all are finite."""
     given = [run.control for run in runs if run.control is not None]
     bad, of = sum(int(np.isinf(x).sum()) for x in given), sum(x.size for x in given)
     return [f"{bad} of {of} controls are infinite: no actuator was told that, so they are left out"] if bad else []
 
 
 def held(names: Sequence[str], columns: Sequence[int | None], run: Arrays, drives: Mapping[str, Driven]) -> None:
-    """Raise InputError where no control ever changes and a servo goes on moving all the same."""
+    """Raise InputError where no control (n, m) ever changes and a servo goes on moving all the same."""
     if run.control is None or any(np.ptp(x[np.isfinite(x)]) for x in run.control.T if np.isfinite(x).any()):
         return
     for place, (name, column) in enumerate(zip(names, columns, strict=True)):
@@ -92,7 +92,7 @@ def held(names: Sequence[str], columns: Sequence[int | None], run: Arrays, drive
 
 
 def places(names: Sequence[str], run: Arrays, reach: Mapping[str, float]) -> list[str]:
-    """Return what to look at where angles go further than joints do, one sentence each.
+    """Return what to look at where angles (n, k) go further than joints do, one sentence each.
 
     Args:
         names: of the joints, one for each column of the positions.
@@ -126,7 +126,7 @@ def columns_of_control(
     stated: bool,
     guesses: list[str],
 ) -> list[int | None]:
-    """Return the column of `control` of each joint, in the order of stated joints where the servos follow that alone.
+    """Return the column of `control` (n, m) of each joint, in the order of stated joints if servos follow that alone.
 
     Raises:
         InputError: a servo follows the control of another joint.

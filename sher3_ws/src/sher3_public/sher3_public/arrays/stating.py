@@ -69,7 +69,7 @@ class Stated:
         return found
 
     def in_si(self, run: Arrays) -> Arrays:
-        """Return a run in SI units; raises InputError as `factors` does."""
+        """Return a run in SI units (s, m, rad, N, N m); raises InputError as `factors` does."""
         given = {name: (factor, getattr(run, name)) for name, factor in self.factors().items()}
         return replace(run, **{name: factor * x for name, (factor, x) in given.items() if x is not None})
 
@@ -81,7 +81,7 @@ class Stated:
         Args:
             bodies: of the model.
             names: of the recorded joints.
-            run: of which the controls and the stamps are looked at.
+            run: of which the controls (n, m) and the stamps (n,) are looked at.
         """
         if self.servo is None:
             return bodies.drives
