@@ -223,7 +223,11 @@ class Effect:
         ]
 
     def signature(self, view: Any, site: str, shape: Shape) -> Signature:
-        """Return what the effect adds to the residuals of one run at a site; every page that is fitted has its own."""
+        """Return what the effect adds to the residuals of one run at a site; every page that is fitted has its own.
+
+        Raises:
+            NotImplementedError: the page has none.
+        """
         raise NotImplementedError
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:

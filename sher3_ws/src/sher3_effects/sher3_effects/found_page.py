@@ -119,7 +119,7 @@ class FoundPage(Page):
         return Signature({Channel(stage, site): columns for stage in stages})
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Return the coefficients in the order of the terms, and the shapes."""
+        """Return the coefficients of the terms, the first of (p,), in their order, and the values of the shape."""
         stated = coefficients[: len(self.terms)]
         return {f"coefficient_{k + 1}": float(c) for k, c in enumerate(stated)} | dict(shape)
 

@@ -132,7 +132,11 @@ class GridView:
         return self.run.period
 
     def quantities(self, site: str) -> dict[str, Array]:
-        """Return quantity, of `sher3_diagnosis.effect.INPUTS`, -> (g, k) columns, as a place feels them."""
+        """Return quantity, of `sher3_diagnosis.effect.INPUTS`, -> (g, k) columns, as a place feels them.
+
+        Raises:
+            NotImplementedError: here; each kind of machine says its own.
+        """
         raise NotImplementedError
 
     def inputs(self, actuator: str) -> Array:

@@ -35,13 +35,13 @@ class Urdf:
     label: str
 
     def word(self, element: Element, key: str) -> str:
-        """Return an attribute that must be there."""
+        """Return an attribute that must be there; raises MachineError where it is not."""
         if key not in element.attrib:
             raise self.error(f"<{element.tag}> has no {key!r}", element.attrib, f"{key}=...", "correct the file")
         return element.attrib[key]
 
     def numbers(self, element: Element, key: str, count: int, default: str | None = None) -> Array:
-        """Return the finite numbers (count,) of an attribute, or of the default of the format."""
+        """Return finite numbers (count,) of an attribute, or the format's default; raises MachineError for others."""
         text = self.word(element, key) if default is None else element.attrib.get(key, default)
         try:
             found = np.array([float(word) for word in text.split()])
@@ -61,7 +61,7 @@ class Urdf:
         return Rotation.from_euler("xyz", rpy).as_matrix(), xyz
 
     def axis(self, joint: Element) -> Array:
-        """Return the axis of a joint in its frame, a unit vector (3,)."""
+        """Return the axis of a joint in its frame, a unit vector (3,); raises MachineError where it has no length."""
         element = joint.find("axis")
         found = self.numbers(Element("axis") if element is None else element, "xyz", 3, DEFAULT_AXIS)
         length = float(np.linalg.norm(found))

@@ -32,7 +32,7 @@ def within_bounds(
 
     Args:
         causes: as quantified.
-        terms: each cause's term of the fit, with its coefficients.
+        terms: each cause's term of the fit, with its coefficients (p,).
         effects: whose pages state bounds of their own.
     """
     stated = {e.id: e.bounds for e in effects}

@@ -136,7 +136,7 @@ def _joint_fit(stage: Stage, members: Sequence[Candidate]) -> tuple[list[tuple[f
 
 
 def lag_of(a: Array, b: Array) -> int:
-    """Return the shift of `b` against `a` [samples] of the largest cross-correlation, means kept as SAGE does."""
+    """Return the shift of `b` (n,) against `a` [samples] of the largest cross-correlation, means kept as SAGE does."""
     n = len(a)
     shifts = range(-MAXIMUM_LAG, MAXIMUM_LAG + 1)
     products = [float(np.dot(a[max(0, -s) : n - max(0, s)], b[max(0, s) : n - max(0, -s)])) for s in shifts]

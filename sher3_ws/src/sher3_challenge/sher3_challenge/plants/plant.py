@@ -51,7 +51,7 @@ class Climate:
     origin: int
 
     def course(self, stamp: int) -> Callable[[Array], Array]:
-        """Return temperature over a run's own time that starts at `stamp` [ns]."""
+        """Return temperature (n,) over a run's own time (n,) [s] that starts at `stamp` [ns]."""
         since = (stamp - self.origin) * 1e-9
         return lambda t: np.asarray(self.start + self.rise * (1 - np.exp(-(since + t) / self.constant)))
 

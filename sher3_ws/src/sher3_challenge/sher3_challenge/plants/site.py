@@ -44,6 +44,6 @@ class Site:
         return float(self.rng.choice([-1.0, 1.0]))
 
     def direction(self, dimensions: int = 3) -> NDArray[np.floating[Any]]:
-        """Return a random unit vector."""
+        """Return a random unit vector (dimensions,)."""
         v = self.rng.standard_normal(dimensions)
         return np.asarray(v / np.linalg.norm(v))

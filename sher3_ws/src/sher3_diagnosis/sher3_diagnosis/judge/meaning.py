@@ -100,7 +100,13 @@ def says_nothing(evidence: Evidence, found: Fit, index: int, cause: Cause) -> bo
 
 
 def of_no_size(term: Term, coefficients: Array, cause: Cause) -> bool:
-    """Return whether each size of a cause may be zero, or any number that tells it from a simpler effect may."""
+    """Return whether each size of a cause may be zero, or any number that tells it from a simpler effect may.
+
+    Args:
+        term: of the fit.
+        coefficients: (p,) of the term.
+        cause: as quantified, with its intervals.
+    """
     bounded = {n: p for n, p in cause.parameters.items() if p.low is not None and p.high is not None}
     sizes = [bounded[n] for n in sizes_of(term, coefficients) if n in bounded]
     beyond = [bounded[n] for n in term.effect.extends_by if n in bounded]
@@ -142,7 +148,7 @@ def _open(p: Parameter) -> bool:
 
 
 def sizes_of(term: Term, coefficients: Array) -> list[str]:
-    """Return the parameters that say how much of an effect there is: what all coefficients scale; without any, all.
+    """Return the parameters of how much of an effect there is: what all coefficients (p,) scale; without any, all.
 
     All of them too where the shape alone does something: a dead time stays where the lag behind it is none. An effect
     that is there by a choice, such as a frame, has none: its coefficients are what is beyond that choice.
@@ -165,7 +171,14 @@ def _scaled(term: Term, coefficients: Array, factor: float) -> dict[str, float]:
 
 
 def impossible(evidence: Evidence, term: Term, coefficients: Array, cause: Cause) -> bool:
-    """Return whether an end of an interval lies where no value can: beyond what its page says, or beyond the travel."""
+    """Return whether an end of an interval lies where no value can: beyond what its page says, or beyond the travel.
+
+    Args:
+        evidence: that was fitted.
+        term: of the fit.
+        coefficients: (p,) of the term.
+        cause: as quantified, with its intervals.
+    """
     limits = dict(term.effect.limits(term.shape))
     travel, sizes = _travel(evidence, term.site), linear_in(term, coefficients)
     for name, p in cause.parameters.items():

@@ -58,7 +58,7 @@ def _visit(
 
 
 def reversals(robot: Robot, time: FloatArray, scale: float) -> Tracks:
-    """Return growing reversals with dwell: from ten micrometres, where friction sticks, to full strokes."""
+    """Return growing reversals with dwell, (n, k): from ten micrometres, where friction sticks, to full strokes."""
     stairs = np.array([0.008, 0.016, 0.032, 0.08, 0.2, 0.45, 0.9])
 
     def levels(j: int) -> Iterator[float]:
@@ -75,7 +75,7 @@ def reversals(robot: Robot, time: FloatArray, scale: float) -> Tracks:
 
 
 def sweep(robot: Robot, time: FloatArray, scale: float) -> Tracks:
-    """Return out-and-back strokes at four constant speeds, over more than one motor revolution at the fast ones."""
+    """Return out-and-back strokes (n, k) at four constant speeds, beyond one motor revolution at the fast ones."""
     speeds = np.array([0.09, 0.34, 0.58, 0.17])
     period = 1.06
     tracks = []
@@ -100,7 +100,7 @@ _LEVELS = (0.05, -0.17, 0.1, -0.08, 0.17, -0.35, 0.27, -0.04, 0.35, 0.0, -0.25, 
 
 
 def steps(robot: Robot, time: FloatArray, scale: float) -> Tracks:
-    """Return moves of many sizes, each as fast as velocity and acceleration limits allow, with time to settle."""
+    """Return moves (n, k) of many sizes, as fast as velocity and acceleration limits allow, with time to settle."""
     tracks = []
     for j, actuator in enumerate(robot.actuators):
         levels = (_unit(actuator) * scale * x for x in itertools.cycle(np.roll(_LEVELS, 3 * j)))
@@ -110,7 +110,7 @@ def steps(robot: Robot, time: FloatArray, scale: float) -> Tracks:
 
 
 def jumps(robot: Robot, time: FloatArray, scale: float) -> Tracks:
-    """Return set-points that jump, as a simple host would send them; the robot's graph refuses them."""
+    """Return set-points (n, k) that jump, as a simple host would send them; the robot's graph refuses them."""
     position = np.zeros((len(time), len(robot.actuators)))
     for j, actuator in enumerate(robot.actuators):
         dwell, start = 0.33 + 0.03 * j, 0.25 + 0.06 * j
@@ -121,7 +121,7 @@ def jumps(robot: Robot, time: FloatArray, scale: float) -> Tracks:
 
 
 def hold(robot: Robot, time: FloatArray, scale: float) -> Tracks:
-    """Return the posture held still: the motion of a run whose excitation is its loads."""
+    """Return the posture held still, zeros (n, k): the motion of a run whose excitation is its loads."""
     return np.zeros((len(time), len(robot.actuators))), np.zeros((len(time), len(robot.actuators)))
 
 
@@ -136,7 +136,7 @@ _VISITS = (
 
 
 def postures(robot: Robot, time: FloatArray, scale: float) -> Tracks:
-    """Return wide moves between postures, each corrected by small moves from both sides."""
+    """Return wide moves (n, k) between postures, each corrected by small moves from both sides."""
     tracks = []
     for j, actuator in enumerate(robot.actuators):
         unit = _unit(actuator) * scale
@@ -147,7 +147,7 @@ def postures(robot: Robot, time: FloatArray, scale: float) -> Tracks:
 
 
 def task(robot: Robot, time: FloatArray, scale: float) -> Tracks:
-    """Return slow smooth combined motion of all axes, as in an insertion, with a contact on the way."""
+    """Return slow smooth combined motion (n, k) of all axes, as in an insertion, with a contact on the way."""
     end = float(time[-1])
     rise, rise_slope = move_track(time, [Move(0.0, 0.9, 1.0), Move(end - 0.95, 0.9, -1.0)])
     tracks = []
@@ -164,7 +164,7 @@ def task(robot: Robot, time: FloatArray, scale: float) -> Tracks:
 
 
 def load_plateaus(time: FloatArray, scale: float) -> tuple[Load, ...]:
-    """Return known loads along +x, -x, +y, -y, +z, -z of {b}, as many plateaus as fit into the time."""
+    """Return known loads along +x, -x, +y, -y, +z, -z of {b}, six plateaus that share the times (n,) [s]."""
     directions = ((1.2, 0, 0), (-1.2, 0, 0), (0, 1.0, 0), (0, -1.0, 0), (0, 0, 0.8), (0, 0, -0.8))
     period = (float(time[-1]) - 0.4) / len(directions)
     loads = []
@@ -175,7 +175,7 @@ def load_plateaus(time: FloatArray, scale: float) -> tuple[Load, ...]:
 
 
 def task_loads(time: FloatArray, scale: float) -> tuple[Load, ...]:
-    """Return two contacts during the task, as a tool meets tissue."""
+    """Return two contacts during the task at times (n,) [s], as a tool meets tissue."""
     end = float(time[-1])
     first = (round(0.34 * end, 3), round(0.56 * end, 3), 0.0, 0.24 * scale, 0.1 * scale)
     second = (round(0.7 * end, 3), round(0.9 * end, 3), 0.2 * scale, -0.1 * scale, 0.28 * scale)
@@ -183,7 +183,7 @@ def task_loads(time: FloatArray, scale: float) -> tuple[Load, ...]:
 
 
 def no_loads(time: FloatArray, scale: float) -> tuple[Load, ...]:
-    """Return no load."""
+    """Return no load at any of the times (n,)."""
     return ()
 
 

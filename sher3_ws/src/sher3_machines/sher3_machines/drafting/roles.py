@@ -286,7 +286,7 @@ def _home(axis: str, groups: Mapping[str, Any]) -> str | None:
 
 
 def moves(x: Array) -> bool:
-    """Return whether a column, or a matrix with a row for each sample, holds more than one value."""
+    """Return whether a column (n,), or a matrix (n, k), of `SAMPLES` rows or more holds more than one value."""
     return x.ndim in (1, 2) and len(x) >= SAMPLES and float(np.ptp(x)) > 0.0
 
 

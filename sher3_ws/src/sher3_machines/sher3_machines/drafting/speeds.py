@@ -19,7 +19,7 @@ from sher3_machines.intake.units import UNITS
 def checked_by_speed(
     time: dict[str, Any], axes: list[dict[str, Any]], tables: Tables, stamps: Array | None, guesses: list[str]
 ) -> None:
-    """Hold recorded speeds against positions: they tell a wrong unit of the clock, else they are left out."""
+    """Hold recorded speeds (n,) against positions: they tell a wrong unit of the clock, else they are left out."""
     ratios: dict[str, float | None] = {}
     for axis in axes:
         if (column := axis["signals"].get("velocity")) is not None:

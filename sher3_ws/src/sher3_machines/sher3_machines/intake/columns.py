@@ -81,7 +81,7 @@ def pick_beside(
     finite: bool = True,
     remedy: str = "name columns of one table, one number in each row",
 ) -> Array:
-    """Return the samples of a column as `pick` does; raises MachineError where they have another shape than this."""
+    """Return the samples (n, ...) of a column as `pick` does; raises MachineError where they have another shape."""
     x = pick(column, tables, run, finite)
     if x.shape != shape:
         raise MachineError(f"{run}: {column.column} has other rows", value=x.shape, limit=shape, remedy=remedy)

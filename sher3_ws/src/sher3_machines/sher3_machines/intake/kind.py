@@ -75,7 +75,7 @@ class Kind(ABC, Generic[D, R]):
 
     @abstractmethod
     def pack(self, run: R) -> Mapping[str, Array]:
-        """Return the arrays of a run as a case stores them."""
+        """Return the arrays of a run as a case stores them, signals (n, ...) of n samples."""
 
     @abstractmethod
     def unpack(self, name: str, arrays: Tables, notes: Sequence[str]) -> R:

@@ -91,7 +91,7 @@ class PositionSight(Sight):
         return np.repeat(noise, 3)
 
     def start(self, tip: Array, measured: Array, run: Labels) -> tuple[Array, Array]:
-        """Return the frames from S p = R x + t + c, linear in the turn S of the measuring frame, body x and c."""
+        """Return frames (4, 4) from S p = R x + t + c, linear in the turn S of the measuring frame, body x and c."""
         n = len(tip)
         rows = np.zeros((3 * n, 15))
         rows[:, :9] = np.einsum("nk,ij->nijk", measured, np.eye(3)).reshape(3 * n, 9)
@@ -120,7 +120,7 @@ class LengthSight(Sight):
         return np.array([noise])
 
     def start(self, tip: Array, measured: Array, run: Labels) -> tuple[Array, Array]:
-        """Return the frames whose lengths fit best, from a start that is linear in anchor, body and their products."""
+        """Return the frames (4, 4) whose lengths fit best, from a start linear in anchor, body and their products."""
         turn, t, length = tip[:, :3, :3], tip[:, :3, 3], measured
         own = one_hot(run)
         rows = [2.0 * np.einsum("nji,nj->ni", turn, t), -2.0 * t, -2.0 * turn.reshape(-1, 9)]

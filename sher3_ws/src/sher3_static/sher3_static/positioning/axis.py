@@ -85,7 +85,7 @@ def parts_of(cycle: Array) -> Labels:
 
 
 def scatter(name: str, rows: dict[str, Array], target: Array) -> float:
-    """Return the standard deviation, m or rad, by which cycles differ beyond an offset and a scale of each.
+    """Return the standard deviation [m or rad] of rows (n,) by which cycles differ beyond offset and scale of each.
 
     Raises:
         MachineError: there are too few repeats.

@@ -80,7 +80,7 @@ class SensorKind(TableKind[SensorDescription]):
 
 
 def view_of(known: SensorDescription, rows: dict[str, Array], warmth: Array) -> SensorView:
-    """Return what the effects ask of the readings; an unknown load is identified first."""
+    """Return what the effects ask of readings (g, 6) [N, N m] at a warmth (g,); an unknown load is identified first."""
     wrench, load = rows["wrench"], known.load
     if "applied" in rows:
         return AppliedView(warmth, wrench, rows["applied"])

@@ -27,20 +27,24 @@ class SensorView(Still):
 
     @property
     def known_frames(self) -> Sequence[Frame]:
-        """Frames that the readings may be in, the stated one first."""
+        """Frames that the readings may be in, the stated one first; raises NotImplementedError here."""
         raise NotImplementedError
 
     @property
     def conditions(self) -> Array:
-        """(g, k) what a linear sensor reads a combination of."""
+        """(g, k) what a linear sensor reads a combination of; raises NotImplementedError here."""
         raise NotImplementedError
 
     def wrench(self, frame: int) -> Array:
-        """Return (g, 6) nominal wrench in one of the frames, N and N m."""
+        """Return (g, 6) nominal wrench in one of the frames, N and N m; raises NotImplementedError here."""
         raise NotImplementedError
 
     def pulls(self, frame: int) -> Sequence[tuple[Array, Array]]:
-        """Return readings and what they follow in one of the frames, (g, 3) each, to find a turn between them."""
+        """Return readings and what they follow in one of the frames, (g, 3) each, to find a turn between them.
+
+        Raises:
+            NotImplementedError: here; each kind of load has its own.
+        """
         raise NotImplementedError
 
     def in_words(self) -> list[str]:

@@ -82,7 +82,10 @@ def motor_bent(m: Motor, q: float, v: float) -> float:
 
 @compiled_inner
 def motor_force(m: Motor, q: float, v: float, force: float, time: float, slip: Array, cable: Array) -> float:
-    """Return what accelerates the motor side, external load left out."""
+    """Return what accelerates the motor side, external load left out.
+
+    The anchors `slip` and `cable` are (4,) each.
+    """
     gain = 1.0
     if m.loss != 0.0:
         gain *= max(0.3, 1 - m.loss * max(0.0, abs(v) / m.loss_velocity - 1.0))
@@ -135,7 +138,7 @@ def input_position(t: Transmission, q: float) -> float:
 def rates(
     m: Motor, d: Drive, t: Transmission, y: Any, demand: float, load: float, time: float, slip: Array, cable: Array
 ) -> Rates:
-    """Return the time derivative of the state `y` of an axis under a held demand and a load force."""
+    """Return the time derivative of the state `y` (7,) of an axis under a held demand and a load force."""
     q, v, xi, lagged, current, load_q, load_v = y
     held = dead(d, demand)
     lagged_rate = 0.0
@@ -194,7 +197,7 @@ def advance(
 
 @compiled_inner
 def reported_force(d: Drive, state: Array, demand: float, time: float) -> float:
-    """Return the force the drive reports: what it makes now, before a new demand acts."""
+    """Return the force the drive reports at a state (7,): what it makes now, before a new demand acts."""
     if d.current_lag > 0.0:
         return state[CURRENT]
     held = state[DEMAND] if d.demand_lag > 0.0 else dead(d, demand)

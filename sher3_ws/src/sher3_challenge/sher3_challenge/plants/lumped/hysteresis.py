@@ -19,7 +19,7 @@ ELEMENTS = len(REACH)
 
 @compiled
 def slip_state(x: float, anchor: Array, reach: float) -> float:
-    """Return the normalised state in [-1, 1] of a Maxwell-slip stack at displacement `x`; anchors stay."""
+    """Return the normalised state in [-1, 1] of a Maxwell-slip stack (4,) at displacement `x`; anchors stay."""
     z = 0.0
     for i in range(ELEMENTS):
         z += SHARE[i] * min(1.0, max(-1.0, (x - anchor[i]) / (reach * REACH[i])))
@@ -28,7 +28,7 @@ def slip_state(x: float, anchor: Array, reach: float) -> float:
 
 @compiled
 def drag_anchors(x: float, anchor: Array, reach: float) -> None:
-    """Move the anchors of the elements that slip, after a step that ended at `x`."""
+    """Move the anchors (4,) of the elements that slip, after a step that ended at `x`."""
     for i in range(ELEMENTS):
         width = reach * REACH[i]
         anchor[i] = min(x + width, max(x - width, anchor[i]))
@@ -36,7 +36,7 @@ def drag_anchors(x: float, anchor: Array, reach: float) -> None:
 
 @compiled
 def play_offset(x: float, width: float, follower: Array) -> float:
-    """Advance a stack of plays around `width` to input `x`; return output less input.
+    """Advance a stack (4,) of plays around `width` to input `x`; return output less input.
 
     Widths spread by +-12 %, so the flanks are soft as those of a real gap are.
     """

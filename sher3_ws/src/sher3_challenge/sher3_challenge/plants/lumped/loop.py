@@ -65,7 +65,7 @@ def rounded(x: float, resolution: float) -> float:
 
 @compiled_inner
 def load_of(t: Transmission, state: Array, load: float, slip: Array, follower: Array) -> float:
-    """Advance lost motion of an axis to its present input; return the load position."""
+    """Advance lost motion of an axis, stacks (4,), to its present input, of a state (7,); return the load position."""
     x = state[LOAD_Q] if t.compliance > 0.0 else input_position(t, state[Q])
     if t.bump != 0.0:
         place = (state[Q] - t.bump_place) / t.bump_width
@@ -124,7 +124,7 @@ def start_states(
 
 @compiled_inner
 def host_command(h: Host, j: int, s: Script, k: int, readings: Array) -> float:
-    """Return the host's velocity command of axis `j` at tick `k`."""
+    """Return the host's velocity command of axis `j` at tick `k`, by the readings (n, 5)."""
     seen = readings[max(0, k - 1), j] if h.stale[j] > 0.0 else readings[k, j]
     u = s.velocity[k, j] + h.gain[j] * (s.position[k, j] - seen)
     u = min(h.velocity_limit[j], max(-h.velocity_limit[j], u))
@@ -146,7 +146,10 @@ def tick_interval(
     m: Motor, d: Drive, t: Transmission, h: Host, j: int, k: int, s: Script, state: Array, held: float,
     load: Array, command: Array, slip: Array,
 ) -> tuple[float, float]:  # fmt: skip
-    """Integrate axis `j` over the interval after tick `k`; return the demand held at its end and the mean demand."""
+    """Integrate axis `j` over the interval after tick `k`; return the demand held at its end and the mean demand.
+
+    `state` (7,) and `slip` (4, 5, 4) are moved on; `command` is (n, 5).
+    """
     at, total, begin, whole = 0.0, 0.0, k * s.period, False
     for c in range(max(0, k - HISTORY), k + 2):
         end = c > k

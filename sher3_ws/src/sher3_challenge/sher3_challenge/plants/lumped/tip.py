@@ -46,7 +46,7 @@ def stretched(g: Geometry, pose: Array, s: Array, tip: Array, force: Array) -> A
 
 @compiled_inner
 def deflected(g: Geometry, pose: Array, tip: Array, turn: Array, force: Array) -> tuple[Array, Array]:
-    """Return tip and rotation under a force at the tip: hinges at P and on the arm, then the tool."""
+    """Return tip (3,) and rotation (3, 3) under a force at the tip: hinges at P and on the arm, then the tool."""
     hinge = g.hinge
     if hinge[0] != 0.0 or hinge[3] != 0.0 or hinge[2] != 0.0:
         outer = pose[:3] + np.array([OUTER_HINGE, 0.0, g.arm[0]])

@@ -56,7 +56,7 @@ def link_change(robot: Robot, fraction: float, tension: Array) -> Array:
 def deflected(
     y: Yielding, period: float, pose: Array, tip: Array, turn: Rotation, contact: Array
 ) -> tuple[Array, Rotation]:
-    """Return tip and rotation with every spring of the structure moved by its force."""
+    """Return tip (n, 3) and rotations with every spring of the structure moved by its force."""
     moved = {spring.way: np.zeros(len(tip)) for spring in y.springs}
     for spring, x in zip(y.springs, spring_motion(y.springs, period, pose, tip, turn, contact).T, strict=True):
         moved[spring.way] = moved[spring.way] + x

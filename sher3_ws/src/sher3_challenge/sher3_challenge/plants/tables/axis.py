@@ -87,7 +87,7 @@ def pushed(d: Drive, raw: float) -> tuple[float, float]:
 
 @compiled_inner
 def drive_force(d: Drive, o: Odd, m: Motor, y: Array, demand: float) -> tuple[float, float, float]:
-    """Return the force the drive asks for, how it falls with speed, and the side of its clamp."""
+    """Return the force the drive asks for at a state (20,), how it falls with speed, and the side of its clamp."""
     v = y[V]
     kp = d.kp * (1.0 - o.schedule * min(1.0, abs(v) / m.top))
     raw = kp * (demand_taken(d, demand) - v) + d.ki * y[XI]
@@ -100,7 +100,7 @@ def drive_force(d: Drive, o: Odd, m: Motor, y: Array, demand: float) -> tuple[fl
 
 @compiled_inner
 def motor_resistance(m: Motor, o: Odd, y: Array, time: float) -> float:
-    """Return what resists the motor by position, direction and past; viscous friction left out."""
+    """Return what resists the motor at a state (20,), by position, direction and past; viscous friction left out."""
     q, v = y[Q], y[V]
     level = friction_level(m, q, v) + at(m.fading, time / m.fading_end)
     if o.resting != 0.0:
@@ -117,13 +117,13 @@ def motor_resistance(m: Motor, o: Odd, y: Array, time: float) -> float:
 
 @compiled_inner
 def reported_force(d: Drive, o: Odd, m: Motor, y: Array, demand: float) -> float:
-    """Return the force the drive makes now, before a new demand acts."""
+    """Return the force the drive makes now, at a state (20,), before a new demand acts."""
     return y[FORCE] if d.lag > 0.0 else drive_force(d, o, m, y, demand)[0]
 
 
 @compiled_inner
 def drift(m: Motor, d: Drive, o: Odd, t: Transmission, y: Array, demand: float, h: float) -> None:
-    """Move positions, the integrator and what remembers the travel by `h` [s]."""
+    """Move positions, the integrator and what remembers the travel, of a state (20,), by `h` [s]."""
     v = y[V]
     dx = h * v
     y[Q] += dx
@@ -161,7 +161,7 @@ def spring(m: Motor, t: Transmission, q: float, pull: float) -> float:
 
 @compiled_inner
 def carried(t: Transmission, y: Array, ahead: float, speed: float, h: float) -> float:
-    """Kick the carriage behind the gap, whose input is at `ahead`; return the force on what drives it."""
+    """Kick the carriage of a state (20,) behind the gap, its input at `ahead`; return the force on what drives it."""
     reach = ahead - y[X2]
     into = abs(reach) - 0.5 * t.gap
     force = 0.0
@@ -180,7 +180,7 @@ def carried(t: Transmission, y: Array, ahead: float, speed: float, h: float) -> 
 def kick(
     m: Motor, d: Drive, o: Odd, t: Transmission, y: Array, demand: float, load: float, time: float, h: float
 ) -> None:
-    """Change the speeds over `h` [s] under a demand and a load force, positions being held."""
+    """Change the speeds of a state (20,) over `h` [s] under a demand and a load force, positions being held."""
     v = y[V]
     force, falls, y[CLAMP] = drive_force(d, o, m, y, demand)
     if d.lag > 0.0:
@@ -223,7 +223,7 @@ def kick(
 
 @compiled_inner
 def load_position(m: Motor, o: Odd, t: Transmission, y: Array) -> float:
-    """Return the true position of the load."""
+    """Return the true position of the load at a state (20,)."""
     if t.gap > 0.0:
         x = y[X2]
     elif t.compliance > 0.0:
@@ -240,7 +240,7 @@ def load_position(m: Motor, o: Odd, t: Transmission, y: Array) -> float:
 def advance(
     m: Motor, d: Drive, o: Odd, t: Transmission, y: Array, demands: Array, load: float, time: float, h: float
 ) -> None:
-    """Advance the state `y` of an axis in steps of `h` [s] under a demand for each step and one load force."""
+    """Advance the state (20,) of an axis in steps of `h` [s] under a demand for each step and one load force."""
     for i in range(len(demands)):
         drift(m, d, o, t, y, demands[i], 0.5 * h)
         kick(m, d, o, t, y, demands[i], load, time + (i + 0.5) * h, h)

@@ -20,7 +20,7 @@ CURVE = 33
 
 @compiled_inner
 def at(table: Array, x: float) -> float:
-    """Return a table at a fraction `x` of its length, 0 to 1, linear between nodes."""
+    """Return a table (m,) at a fraction `x` of its length, 0 to 1, linear between nodes."""
     u = min(max(x, 0.0), 1.0) * (len(table) - 1)
     i = min(int(u), len(table) - 2)
     return table[i] + (u - i) * (table[i + 1] - table[i])
@@ -28,7 +28,7 @@ def at(table: Array, x: float) -> float:
 
 @compiled_inner
 def around(table: Array, turns: float) -> float:
-    """Return a periodic table at a number of turns, linear between nodes."""
+    """Return a periodic table (m,) at a number of turns, linear between nodes."""
     n = len(table)
     u = (turns - math.floor(turns)) * n
     i = int(u)
@@ -42,7 +42,7 @@ def around(table: Array, turns: float) -> float:
 def crept(z: float, dx: float, reach: float, slope: Array) -> float:
     """Return the state of a hysteresis in [-1, 1] after a travel `dx`.
 
-    `slope` is dz/dx times `reach` over the state seen in the direction of travel, from -1 to 1.
+    `slope` (m,) is dz/dx times `reach` over the state seen in the direction of travel, from -1 to 1.
     """
     if dx == 0.0:
         return z

@@ -83,7 +83,7 @@ def seen(m: Motor, o: Odd, h: Host, x: float, speed: float) -> float:
 
 @compiled_inner
 def weighed(m: Motors, g: Mechanism, load: Array, force: Array, gravity: Array, external: Array, room: Array) -> None:
-    """Write the load force of every axis into `gravity`: its weight by its own table, less the contact."""
+    """Write the load force of every axis into `gravity` (5,): its weight by its own table, less the contact (3,)."""
     load_forces(g, load, force, gravity, external, room)
     for j in range(AXES):
         beyond = at(m[j].gravity_gain, 0.5 + 0.25 * load[j] / m[j].span) - 1.0
@@ -92,7 +92,7 @@ def weighed(m: Motors, g: Mechanism, load: Array, force: Array, gravity: Array, 
 
 @compiled_inner
 def start(m: Motor, d: Drive, o: Odd, t: Transmission, y: Array, x: float, load: float, side: float) -> None:
-    """Put an axis at rest: its load at `x` under a force, its lost motion on a side, its drive holding."""
+    """Put an axis (20,) at rest: its load at `x` under a force, its lost motion on a side, its drive holding."""
     y[LOOP] = side
     y[SNAP] = -1.0 if x > o.place else 1.0
     y[X2] = x + side * t.hysteresis
@@ -137,7 +137,7 @@ def begin(
 
 @compiled_inner
 def held_mean(average: float, j: int, s: Script, command: Array, begin: float, end: float, drive: Array) -> float:
-    """Return the mean demand of axis `j` over a step; what it holds and the next command, `drive`, move on."""
+    """Return the mean demand of axis `j` over a step; what it holds and the next command, `drive` (2, 5), move on."""
     total, now = 0.0, begin
     while drive[1, j] < len(command):
         c = int(drive[1, j])
@@ -158,7 +158,7 @@ def held_mean(average: float, j: int, s: Script, command: Array, begin: float, e
 
 @compiled_inner
 def read_encoders(m: Motor, o: Odd, h: Host, j: int, k: int, y: Array, x: float, off: float, out: Course) -> None:
-    """Write positions and readings of axis `j` at tick `k`; the load encoder reads `off` too much."""
+    """Write positions and readings of axis `j`, a state (20,), at tick `k`; the load encoder reads `off` too much."""
     out.motor[k, j], out.load[k, j] = y[Q], x
     out.load_reading[k, j] = counted(seen(m, o, h, x, y[V]) + off + h.offset + h.load_edge, h.load_count)
     if o.repeat > 0.0 and k > 0 and k % int(o.repeat) == 0:
@@ -168,7 +168,7 @@ def read_encoders(m: Motor, o: Odd, h: Host, j: int, k: int, y: Array, x: float,
 
 @compiled_inner
 def commanded(o: Odd, h: Host, j: int, s: Script, k: int, reading: float, worked: Array) -> float:
-    """Return the host's velocity command; `worked` keeps the reading that it works with."""
+    """Return the host's velocity command; `worked` (5,) keeps the reading that it works with."""
     worked[j] = reading if k == 0 else (1.0 - o.smoothing) * reading + o.smoothing * worked[j]
     u = s.velocity[k, j] + h.gain * (s.position[k, j] - worked[j])
     return min(h.velocity_limit, max(-h.velocity_limit, u))

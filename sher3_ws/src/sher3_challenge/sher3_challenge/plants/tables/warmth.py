@@ -13,7 +13,7 @@ LAG = 15.0
 
 
 def temperatures(climate: Climate, stamp: int, time: Array) -> tuple[Array, Array]:
-    """Return what the thermometer and the body have [degC] over a run's own time, which starts at `stamp` [ns]."""
+    """Return what thermometer and body have, (n,) each [degC], over a run's own time, which starts at `stamp` [ns]."""
     since = np.maximum(0.0, (stamp - climate.origin) * 1e-9 + time)
     room, body = np.full(len(time), climate.start), np.full(len(time), climate.start)
     for share, constant in ((1 - FAST_SHARE, climate.constant), (FAST_SHARE, FAST * climate.constant)):

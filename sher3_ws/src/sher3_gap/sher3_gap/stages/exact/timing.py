@@ -181,7 +181,7 @@ def usual_of(ticks: Sequence[Array]) -> float:
 
 
 def clockwork(ticks: Sequence[Array]) -> float:
-    """Return the share of the late ticks, by a period or more, that are as late as a tick of the cycle before.
+    """Return the share of late ones among ticks (n,), by a period or more, that are as late as one of the cycle before.
 
     Of all lengths of a cycle in `CYCLES` the largest share. A share of 1 is a drive that looks for a demand at every
     second, third... tick; commands that are lost by chance, each with p, have p at most.

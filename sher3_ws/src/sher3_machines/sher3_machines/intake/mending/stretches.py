@@ -41,7 +41,10 @@ def repeats_judged(records: Mapping[str, Tables], columns: int) -> tuple[dict[st
 
 
 def beginning(name: str, tables: Tables, stamps: Mapping[str, Array], most: int) -> tuple[Tables, str]:
-    """Return the beginning of a repeat, where all are alike, and a note; all of it where it has at most `most` rows."""
+    """Return the beginning of a repeat, where all are alike, and a note; all of it where it has at most `most` rows.
+
+    Columns are (n, ...), and the clock of each in `stamps` is (n,).
+    """
     rows = max((len(x) for x in stamps.values()), default=0)
     if rows <= most:
         return tables, ""
@@ -56,8 +59,8 @@ def spread(name: str, tables: Tables, stamps: Mapping[str, Array], most: int) ->
 
     Args:
         name: of the run.
-        tables: its columns.
-        stamps: column -> clock of its table; columns without one stay whole.
+        tables: its columns (n, ...).
+        stamps: column -> clock (n,) of its table; columns without one stay whole.
         most: rows that all stretches together may have, of the clock with most.
     """
     rows = max((len(x) for x in stamps.values()), default=0)

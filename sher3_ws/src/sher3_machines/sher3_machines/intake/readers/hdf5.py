@@ -35,7 +35,7 @@ PICTURE = 3
 
 
 def read_hdf5(path: Path) -> dict[str, Array]:
-    """Return the numeric datasets of a file, as they are, by their path, fields of compound ones as `dataset/field`.
+    """Return the numeric datasets (n, ...) of a file by their path, fields of compound ones as `dataset/field`.
 
     Pictures, text, links and what lies in another file are left out. Structs of MATLAB are `struct/field`.
 
@@ -47,7 +47,7 @@ def read_hdf5(path: Path) -> dict[str, Array]:
 
 
 def read_raw(path: Path, raw: bytes) -> dict[str, Array]:
-    """Return what `read_hdf5` does, of a file that is in memory; raises the same errors."""
+    """Return the arrays (n, ...) as `read_hdf5` does, of a file that is in memory; raises the same errors."""
     if find_spec("h5py") is None:
         remedy = "install sher3[hdf5], or save it as npz or csv, in MATLAB with the option -v7"
         raise no_reader(path, "HDF5", "h5py", remedy)
@@ -55,7 +55,7 @@ def read_raw(path: Path, raw: bytes) -> dict[str, Array]:
 
 
 def arrays(raw: bytes, limit: int) -> dict[str, Array]:
-    """Return the arrays of a file; raises ValueError where they take more than `limit`, bytes, or none is there."""
+    """Return the arrays (n, ...) of a file; raises ValueError where they exceed `limit`, bytes, or none is there."""
     with import_module("h5py").File(BytesIO(raw), "r") as file:
         wanted: dict[str, Any] = {}
         file.visititems(lambda name, x: wanted.update({name: x} if _may_be_samples(name, x) else {}))  # follows no link

@@ -46,7 +46,12 @@ def read_mat(path: Path) -> dict[str, Array]:
 
 
 def arrays(raw: bytes, limit: int) -> dict[str, Array]:
-    """Return the arrays of a file to version 7; raises ValueError without any or beyond `limit`, bytes unpacked."""
+    """Return the arrays (n, ...) of a file to version 7; raises ValueError without any, or over `limit` unpacked.
+
+    Args:
+        raw: the file.
+        limit: bytes that its arrays may take, unpacked.
+    """
     import scipy.io
 
     declared = _declared(BytesIO(raw))
@@ -63,7 +68,7 @@ def arrays(raw: bytes, limit: int) -> dict[str, Array]:
 
 
 def flatten(name: str, value: Any, depth: int = 0) -> dict[str, Array]:
-    """Return the numeric arrays in a value of `scipy.io.loadmat`, by path; class objects and text are left out."""
+    """Return numeric arrays (n, ...) of a value of `scipy.io.loadmat`, by path; class objects and text are left out."""
     x = np.asarray(value)
     if depth > MAX_DEPTH or CLASS in (x.dtype.names or ()):
         return {}

@@ -16,7 +16,10 @@ def plain(x: NDArray[np.generic]) -> Array:
 
 
 def stacked(parts: Sequence[Array]) -> Array:
-    """Return the one array of a struct, or those of a struct array one after the other."""
+    """Return the one array of a struct, or those of a struct array one after the other.
+
+    Arrays of one shape (...) are stacked to (parts, ...), numbers (1,) to (parts,); others are strung together, (n,).
+    """
     if len(parts) == 1:
         return parts[0]
     if len({x.shape for x in parts}) == 1:

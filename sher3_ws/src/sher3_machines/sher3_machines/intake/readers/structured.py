@@ -25,7 +25,7 @@ SHOWN = 100
 
 
 def read_npz(path: Path) -> dict[str, Array]:
-    """Return the numeric arrays of a file, as they are, by name."""
+    """Return the numeric arrays (n, ...) of a file by name; raises FileError as `read_arrays` does."""
     return numeric(read_arrays(path, max_bytes=MAX_BYTES))
 
 

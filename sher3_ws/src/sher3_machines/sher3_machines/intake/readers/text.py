@@ -37,6 +37,10 @@ def read_table(path: Path) -> dict[str, Array]:
 
     ISO times become seconds since 1970, UTC where no zone is given. Columns of text are left out; empty cells are nan.
     A log with a channel, a stamp and a reading in each line becomes `CHANNEL/stamp` and `CHANNEL/value`.
+
+    Raises:
+        FileError: the file cannot be read, or is no text.
+        ValueError: it has no rows.
     """
     lines = [line for line in decoded(path).splitlines() if line.strip()]
     preamble = 0

@@ -155,7 +155,7 @@ class Loop:
 
 
 def rounded(x: Array, resolution: Array, edge: Array) -> Array:
-    """Return `x` at the nearest count, the encoder's edges `edge` counts beside the multiples; 0 means exact."""
+    """Return `x` (..., k) at the nearest count, edges of encoders `edge` (k,) counts off the multiples; 0 is exact."""
     if not resolution.any():
         return x
     return np.asarray((np.rint(x / resolution - edge) + edge) * resolution)
