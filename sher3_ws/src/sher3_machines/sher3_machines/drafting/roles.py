@@ -89,14 +89,17 @@ def counted_alike(placed: Mapping[Place, tuple[str, str]]) -> dict[Place, tuple[
 
 
 def _named(tables: Tables, clock: str | None) -> dict[Place, tuple[str, str]]:
-    """Return signal and axis of every column whose name says one, of tables that have stamps: none is the clock's."""
+    """Return signal and axis of every column whose name says one, of tables that have stamps.
+
+    What has the name of the clock and never goes back is the clock of its own table.
+    """
     lengths = {table_of(n): len(x) for n, x in tables.items() if clock and bare(n) == bare(clock)}
     least = len(tables[clock]) if clock else 0
     found: dict[Place, tuple[str, str]] = {}
     for name, x in tables.items():
         stamped = len(x) == lengths.get(table_of(name), least) or not clock
         what = named(name)
-        timed = clock is not None and bare(name) == bare(clock)
+        timed = clock is not None and bare(name) == bare(clock) and not (np.diff(x, axis=0) < 0.0).any()
         if what.signal is None or not stamped or timed or counts_samples(name):
             continue
         for index in range(x.shape[1]) if x.ndim == 2 and x.shape[1] <= WIDEST else [None]:

@@ -28,6 +28,7 @@ def forked(call: Callable[[], Any]) -> Any:
     reads, writes = Pipe(duplex=False)
     child = os.fork()
     if not child:
+        signal.signal(signal.SIGALRM, signal.SIG_DFL)
         signal.alarm(LONGEST)
         try:
             writes.send(call())
