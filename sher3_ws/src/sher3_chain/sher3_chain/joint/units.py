@@ -27,7 +27,7 @@ def check_units(axis: Axis, signals: dict[str, Array], run: str, over: float = 0
 
     Args:
         axis: as described.
-        signals: of it, SI units.
+        signals: of it, (n,) each, SI units.
         run: name, for messages.
         over: range within which the position was recorded before its wraps were joined; 0: there were none.
 

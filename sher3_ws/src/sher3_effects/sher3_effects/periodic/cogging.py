@@ -85,7 +85,7 @@ class CoggingOnJoint(Cogging):
         return Signature({Channel(self.stage, site): column(*waves)})
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Return amplitude, periods per turn of the joint (per 2 pi m of one that slides) and phase."""
+        """Return amplitude, periods per turn of the joint (per 2 pi m of one that slides) and phase [rad], of (2,)."""
         return sine_of(shape, coefficients, "periods_per_turn")
 
 

@@ -16,7 +16,7 @@ def phase_at_zero(on: str) -> Any:
 
 
 def sine_of(shape: Shape, coefficients: Array, order: str = "periods_per_rev") -> dict[str, float]:
-    """Return amplitude, order and phase of A sin(n turn + phase); the first two coefficients are its quadratures."""
+    """Return amplitude, order and phase [rad] of A sin(n turn + phase); its quadratures are the first two of (p,)."""
     sine, cosine = float(coefficients[0]), float(coefficients[1])
     amplitude, phase = float(np.hypot(sine, cosine)), float(np.arctan2(cosine, sine))
     return {"amplitude": amplitude, order: shape[order], "phase": phase}

@@ -97,7 +97,7 @@ def mean_force(
 
 
 def step_share(decay: Array) -> Array:
-    """Mean share of a force step that is left over the period in which it relaxes, from 1 to 0.
+    """Mean share (k,) of a force step that is left over the period in which it relaxes, from 1 to 0.
 
     The velocity loop relaxes it as exp(-decay u), u in 0..1; one half where it relaxes evenly.
     """

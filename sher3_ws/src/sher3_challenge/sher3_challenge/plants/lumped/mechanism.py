@@ -18,7 +18,7 @@ TOLERANCE = 1e-15  # of the squared lengths: 1e-14 m of a link
 
 @compiled
 def rotation(w: Array) -> Array:
-    """Return the rotation matrix of a rotation vector (Rodrigues)."""
+    """Return the rotation matrix (3, 3) of a rotation vector (3,) [rad] (Rodrigues)."""
     angle = math.sqrt(w[0] ** 2 + w[1] ** 2 + w[2] ** 2)
     a, b = (1.0, 0.5) if angle < 1e-9 else (math.sin(angle) / angle, (1 - math.cos(angle)) / angle**2)
     k = np.array([[0.0, -w[2], w[1]], [w[2], 0.0, -w[0]], [-w[1], w[0], 0.0]])

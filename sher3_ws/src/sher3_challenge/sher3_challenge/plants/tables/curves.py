@@ -61,7 +61,7 @@ def ring(rng: np.random.Generator, width: float = 0.06) -> Array:
 
 
 def teeth(rng: np.random.Generator, order: float, phase: float, uneven: float) -> Array:
-    """Return a ring that repeats about `order` times: every tooth pointed, none like the next.
+    """Return a ring (RING,) that repeats about `order` times: every tooth pointed, none like the next.
 
     Its projection on sin(order x + phase) is one; the share `uneven` of rms is left beside it.
     """

@@ -19,7 +19,7 @@ NODES = 1500
 
 
 def slider_travel(linkage: Array, angle: Array) -> Array:
-    """Return the slider's travel for tilt angles: x(angle) - x(0), x = r sin + sqrt(l^2 - (e - r cos)^2)."""
+    """Return the slider's travel (n,) for tilt angles (n,): x(angle) - x(0), x = r sin + sqrt(l^2 - (e - r cos)^2)."""
     r, length, e = linkage
 
     def x(a: Array) -> Array:
