@@ -21,8 +21,8 @@ from sher3_drivers.sensor.device import WrenchRecord
 from sher3_faults.requests import make_request
 from sher3_runtime.ports import ports
 from sher3_safety.rows.row import FIRM, IDLE, LIMIT, MOVING, NOBODY, SIDEWAYS
-from sher3_safety.runs.operator_node import tare
 from sher3_safety.runs.stepped import MatrixRun
+from std_srvs.srv import Trigger
 
 Attack = Callable[[MatrixRun], None]
 NOISE, CREEP = 2e-8, 1e-3
@@ -138,12 +138,16 @@ def a_second_apart(run: MatrixRun) -> None:
 
 
 def tare_while_it_ramps(run: MatrixRun) -> None:
-    """Tare while the sensor drifts by 0.02 N/s with nobody there, enable, and press the pedal."""
+    """Tare while the sensor drifts by 0.02 N/s with nobody there, enable, and press the pedal.
+
+    The node is asked itself: threads of the middleware, which would carry a service, do not live on in a fork.
+    """
     run.operator.force = 0.0
     run.operator.command(StateCommand.DISABLE.value)
     run.graph.step(300)
     run.inject(make_request(component="force_sensor", fault="drift", parameters={"rate": 0.02}).to_json())
-    tare(run.graph)
+    (service,) = (s for s in run.rig.admittance.services if s.srv_name.endswith("admittance/tare"))
+    service.callback(Trigger.Request(), Trigger.Response())
     run.enable(2)
     run.operator.pedal = 1.0
 
