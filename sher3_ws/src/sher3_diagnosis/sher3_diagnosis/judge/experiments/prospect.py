@@ -42,6 +42,7 @@ class Outcome:
         odds: that this law is at work, if one of the laws is.
         library: probability after it that the library holds the cause.
         far: unlikeness of each effect to it.
+        shares: of the library's probability, of each effect.
         behind: by how much the closest of the others stays behind, per sample, in squares of the floor.
     """
 
@@ -49,6 +50,7 @@ class Outcome:
     odds: float
     library: float
     far: Mapping[int, float]
+    shares: Mapping[int, float]
     behind: float
 
 
@@ -65,8 +67,7 @@ class Prospect:
 
     def odds(self, alike: Alike) -> float:
         """Return the probability after it of what is at work, and of what nothing tells from it, over the laws."""
-        each = ((o, k, p) for o in self.outcomes for k, p in zip(o.far, _shares(o.far), strict=True))
-        return sum(o.odds * o.library * p for o, k, p in each if k in alike[o.law])
+        return sum(o.odds * o.library * sum(o.shares[k] for k in o.shares.keys() & alike[o.law]) for o in self.outcomes)
 
 
 @dataclass(frozen=True)
@@ -142,8 +143,9 @@ class Rivals:
                 library = with_bend(self.judged, law.found, after, both, worth) if level else self.judged.library
                 far = {k: unlikeness(f, after.total, worth) if k != law.effect else 0.0 for k, f in best.items()}
                 behind = min((f.total - after.total for k, f in best.items() if k != law.effect), default=0.0)
-                odds = law.odds / len(levels)
-                outcomes.append(Outcome(i, odds, library, far, max(0.0, behind) / max(1, samples)))
+                shares = shares_of(np.array(list(far.values())), in_force()).tolist()
+                odds, behind = law.odds / len(levels), max(0.0, behind) / max(1, samples)
+                outcomes.append(Outcome(i, odds, library, far, dict(zip(far, shares, strict=True)), behind))
         return Prospect(outcomes)
 
     @property
@@ -172,11 +174,6 @@ class Rivals:
 def sharing(j: Judged) -> list[int]:
     """Return the numbers of the candidates that share the odds of the library."""
     return [k for k, p in enumerate(j.effects) if p >= LISTED * j.library]
-
-
-def _shares(far: Mapping[int, float]) -> list[float]:
-    """Return how effects share the probability of the library, each that unlike the law at work."""
-    return [float(p) for p in shares_of(np.array(list(far.values())), in_force())]
 
 
 def _beside(terms: Sequence[Term], laws: Sequence[Term]) -> list[Term]:
