@@ -44,7 +44,7 @@ def test_the_robot_was_at_speed_before_and_moved_again_after(compact):
     """Without this a robot that never moves would pass. The first tick of a creep counts: 2 mm/s for 2 of 40 ms."""
     for verdict in compact.verdicts:
         assert verdict.outcome.speed == pytest.approx(verdict.state.speed, rel=0.2, abs=1.2e-4)
-        if verdict.row.effect == "stops" and not verdict.row.final:
+        if verdict.row.expects == "stops" and not verdict.row.final:
             assert verdict.outcome.resumed > 20e-6
 
 
@@ -71,7 +71,7 @@ def test_a_fault_that_nobody_sees_misses():
 
 
 def test_a_fault_is_the_same_again_for_its_seed():
-    row = Row("force_sensor", "intermittent", {"probability": 0.8}, effect="either")
+    row = Row("force_sensor", "intermittent", {"probability": 0.8}, expects="either")
     runs = [run_cells("seeded", [(row, IDLE), (row, LIMIT)], load_robot(), FOLDER, seed=5) for _ in range(2)]
     assert runs[0] == runs[1]
 

@@ -56,7 +56,7 @@ def test_near_tissue_the_budget_is_ten_times_tighter():
 
 
 def test_what_must_go_on_may_neither_trip_nor_leave_its_way():
-    row = Row("force_sensor", "duplicated", effect="goes on")
+    row = Row("force_sensor", "duplicated", expects="goes on")
     going = replace(GOOD, reason="", detection=None, stop=None, travel=1e-3)
     assert judge(row, LIMIT, going).holds
     assert judge(row, LIMIT, replace(going, reason="CLOCK")).misses == ("tripped: CLOCK",)
@@ -64,14 +64,14 @@ def test_what_must_go_on_may_neither_trip_nor_leave_its_way():
 
 
 def test_what_chance_decides_may_trip_but_then_stops_within_the_budget():
-    row = Row("cpu", "slow", {"processes": 2.0}, effect="either")
+    row = Row("cpu", "slow", {"processes": 2.0}, expects="either")
     tripped = replace(GOOD, travel=1e-3, stop=0.4, detection=0.3, braking=100e-6)
     assert judge(row, LIMIT, tripped).holds
     (miss,) = judge(row, LIMIT, replace(tripped, braking=251e-6)).misses
     assert miss == "travelled 251 um after the report (budget 250 um)"
 
 
-ENDED = Row("process.plant", "off", effect="ends", reasons=("DRIVE_SILENT",))
+ENDED = Row("process.plant", "off", expects="ends", reasons=("DRIVE_SILENT",))
 END = replace(GOOD, stop=None, travel=0.0, faulted=0.023, fault_reason="DRIVE_SILENT")
 
 

@@ -78,9 +78,9 @@ WATCHES = [
 @pytest.mark.parametrize("witness", WITNESSES, ids=lambda witness: witness.reason)
 def test_a_watch_answers_alone_and_others_do_where_it_is_blinded(witness):
     alone, blinded = NAMED[witness.alone], NAMED[witness.blinded]
-    bars = alone.effect == "barred" and witness.reason in alone.why
-    assert bars or (alone.reasons == (witness.reason,) and alone.effect in ("stops", "said"))
-    assert witness.instead in blinded.reasons or (not witness.instead and blinded.effect in ("barred", "residual"))
+    bars = alone.expects == "barred" and witness.reason in alone.why
+    assert bars or (alone.reasons == (witness.reason,) and alone.expects in ("stops", "said"))
+    assert witness.instead in blinded.reasons or (not witness.instead and blinded.expects in ("barred", "residual"))
     assert witness.reason not in blinded.reasons
 
 

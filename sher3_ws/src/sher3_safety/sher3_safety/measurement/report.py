@@ -32,16 +32,16 @@ def table(verdicts: Iterable[Verdict]) -> list[tuple[str, ...]]:
 
 
 def _line(name: str, cells: Sequence[Verdict]) -> tuple[str, ...]:
-    effect = cells[0].row.effect
+    expects = cells[0].row.expects
     travel = {cell.state.name: _travel(cell.row, cell) for cell in cells}
-    times = _ms(_longest_detection(cells)), _ms(_longest_stop(cells) if effect == "stops" else None)
+    times = _ms(_longest_detection(cells)), _ms(_longest_stop(cells) if expects == "stops" else None)
     return (
         name,
         _first_reasons(cells),
         *times,
         *(travel.get(state.name, "") for state in STATES),
         ", ".join(f"{state.name} {travel[state.name]}" for state in FURTHER if state.name in travel),
-        effect,
+        expects,
         _held(cells),
     )
 
@@ -74,15 +74,15 @@ def _held(cells: Sequence[Verdict]) -> str:
     missed = sum(not cell.holds for cell in cells)
     if missed:
         return f"MISS {missed} of {len(cells)}"
-    return "residual" if cells[0].row.effect in ("residual", "said") else "ok"
+    return "residual" if cells[0].row.expects in ("residual", "said") else "ok"
 
 
 def _travel(row: Row, cell: Verdict) -> str:
     if cell.outcome is None:
         return "?"
-    if row.effect == "ends":
+    if row.expects == "ends":
         return "-"
-    far = row.effect in ("stops", "residual", "said") and not row.slow
+    far = row.expects in ("stops", "residual", "said") and not row.slow
     metres = cell.outcome.travel if far else cell.outcome.excess
     return f"{metres * 1e6:.1f}"
 
@@ -101,7 +101,7 @@ def nearest_to_budget(verdicts: Sequence[Verdict]) -> str:
     shares = []
     for verdict in verdicts:
         row, outcome = verdict.row, verdict.outcome
-        if row.effect == "stops" and outcome is not None:
+        if row.expects == "stops" and outcome is not None:
             travel = outcome.excess if row.slow else outcome.travel
             budget = verdict.state.budget if row.budget is None else row.budget
             shares.append(

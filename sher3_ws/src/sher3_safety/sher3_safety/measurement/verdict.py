@@ -35,7 +35,7 @@ class Verdict:
         """Return plain data."""
         outcome = None if self.outcome is None else self.outcome.to_dict()
         cell = {"component": self.row.component, "fault": self.row.fault, "parameters": dict(self.row.parameters)}
-        expected = {"state": self.state.name, "effect": self.row.effect, "budget": self.state.budget}
+        expected = {"state": self.state.name, "effect": self.row.expects, "budget": self.state.budget}
         return {"name": self.row.name, **cell, **expected, "outcome": outcome, "misses": list(self.misses)}
 
 
@@ -49,7 +49,7 @@ def judge(row: Row, state: State, outcome: Outcome | None, recovered: bool = Tru
 def _misses(row: Row, state: State, o: Outcome, recovered: bool) -> Iterator[str]:
     budget = state.budget if row.budget is None else row.budget
     # Where the pedal is released, that is the onset, and the fault may have been noticed before.
-    operating = OperatingState.DISABLED if row.effect == "barred" else state.operating
+    operating = OperatingState.DISABLED if row.expects == "barred" else state.operating
     found_before = row.since and o.operating == OperatingState.FAULT
     if o.operating not in ("", operating) and not row.release and not found_before:
         yield f"was {o.operating} when the fault set in instead of {operating.value}"
@@ -57,21 +57,21 @@ def _misses(row: Row, state: State, o: Outcome, recovered: bool) -> Iterator[str
         yield f"moved at {o.speed * 1e3:.2f} mm/s before the fault instead of {state.speed * 1e3:g}"
     if state.end and o.to_end > AT_END:
         yield f"{o.to_end * 100:.1f} % of its travel from its end before the fault (limit {AT_END * 100:g} %)"
-    if row.effect == "goes on" and o.tripped:
+    if row.expects == "goes on" and o.tripped:
         yield f"tripped: {o.reason}"
-    if row.effect == "ends":
+    if row.expects == "ends":
         yield from _of_an_end(row, o)
-    elif row.effect == "said":
+    elif row.expects == "said":
         yield from _of_a_report(row, o)
-    elif row.effect == "barred":
+    elif row.expects == "barred":
         yield from _of_a_bar(row, o, budget)
-    elif row.effect == "stops":
+    elif row.expects == "stops":
         yield from _of_a_stop(row, state, o, budget)
-    elif o.excess > budget and row.effect != "residual":
+    elif o.excess > budget and row.expects != "residual":
         yield f"{o.excess * 1e6:.0f} um off its way (budget {budget * 1e6:.0f} um)"
-    if row.effect == "either" and o.tripped and o.braking > budget:
+    if row.expects == "either" and o.tripped and o.braking > budget:
         yield f"travelled {o.braking * 1e6:.0f} um after the report (budget {budget * 1e6:.0f} um)"
-    if (row.effect == "stops" and not row.slow) or (row.effect in ("stops", "either") and o.tripped):
+    if (row.expects == "stops" and not row.slow) or (row.expects in ("stops", "either") and o.tripped):
         if o.alone > STANDS * state.budget:
             yield f"moved {o.alone * 1e6:.1f} um before the pedal was released"
         if o.resumed < MOVES_AGAIN and recovered and not row.final:

@@ -18,12 +18,12 @@ NODES = ("motor_driver", "admittance", "supervisor", "kinematics", "force_sensor
 
 WALL = (
     *(Row(f"process.{name}", "off", quick=name in ("motor_driver", "supervisor")) for name in NODES),
-    Row("process.recorder", "off", effect="goes on", why=RECORDING),
-    Row("process.plant", "off", effect="ends", reasons=("DRIVE_SILENT", "EMERGENCY_STOP"), why=WORLD),
+    Row("process.recorder", "off", expects="goes on", why=RECORDING),
+    Row("process.plant", "off", expects="ends", reasons=("DRIVE_SILENT", "EMERGENCY_STOP"), why=WORLD),
     *(Row(f"process.{name}", "stuck", quick=name == "motor_driver") for name in NODES),
-    *(Row(HOG, "slow", {"processes": count}, effect="either", why=BUSY) for count in (1.0, 2.0, 8.0)),
+    *(Row(HOG, "slow", {"processes": count}, expects="either", why=BUSY) for count in (1.0, 2.0, 8.0)),
     *(
-        Row(HOG, "slow", {"processes": count, "realtime": 0.0}, effect="either", why=f"{BUSY}; {ALIKE}")
+        Row(HOG, "slow", {"processes": count, "realtime": 0.0}, expects="either", why=f"{BUSY}; {ALIKE}")
         for count in (1.0, 2.0)
     ),
 )

@@ -10,7 +10,7 @@ from sher3_common.operating_state import OperatingState
 from sher3_description import ACTUATORS
 from sher3_faults.requests import FaultRequest, make_request
 
-Effect = Literal["stops", "goes on", "either", "residual", "ends", "said", "barred"]
+Expected = Literal["stops", "goes on", "either", "residual", "ends", "said", "barred"]
 Since = Literal["", "enabling", "recovery"]
 DETECTION_LIMIT, STOP_LIMIT = 0.050, 0.100
 """Longest times [s] from the onset of a fault to the first reaction and to rest. In 50 ms the tip travels the whole
@@ -78,7 +78,7 @@ class Row:
     """One fault of one component, in every state.
 
     Attributes:
-        effect: what has to happen. `stops`: the robot stops in time and within the budget, and moves again only when
+        expects: what has to happen. `stops`: the robot stops in time and within the budget, and moves again only when
             the operator asks for it. `goes on`: it does not stop, and the tip stays within the budget of its
             undisturbed path. `either`: chance decides between the two. `residual`: no detector can see the fault, so
             the travel is only stated. `ends`: the emulated robot itself has ended and there is no tip to measure; the
@@ -107,7 +107,7 @@ class Row:
     component: str
     fault: str
     parameters: Mapping[str, float] = field(default_factory=dict)
-    effect: Effect = "stops"
+    expects: Expected = "stops"
     reasons: tuple[str, ...] = ()
     duration: float | None = 0.12
     quiet: tuple[str, ...] = ()

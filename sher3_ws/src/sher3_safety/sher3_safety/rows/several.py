@@ -43,7 +43,7 @@ def _creeps() -> Iterator[Row]:
         yield Row(f"{LEGS}.demand", "creep", {"speed": speed}, reasons=DISOBEYS, slow=True, quiet=FAST,
                   duration=min(LONGEST, 2e-5 / speed), states=ALL)  # fmt: skip
     for name, speed in ((LEGS, 2e-3), (AXIS, 1e-3), (ROLL, 2e-2)):
-        yield Row(f"{name}.motor", "creep", {"speed": speed}, effect="said", reasons=("MOVED_DISABLED",),
+        yield Row(f"{name}.motor", "creep", {"speed": speed}, expects="said", reasons=("MOVED_DISABLED",),
                   states=(DISABLED,), why=NO_POWER)  # fmt: skip
 
 
@@ -63,7 +63,7 @@ def _words() -> Iterator[Row]:
     """Yield drives that say that they do not do as they are told, and do."""
     for bit in BITS.values():
         yield Row(f"{AXIS}.statusword", "wrong", {"code": float(bit)}, reasons=("DRIVE_UNWILLING",))
-    yield Row(f"{AXIS}.statusword", "wrong", {"code": float(0x80)}, effect="goes on", why=WARNS)
+    yield Row(f"{AXIS}.statusword", "wrong", {"code": float(0x80)}, expects="goes on", why=WARNS)
 
 
 def _lively() -> Iterator[Row]:
@@ -114,7 +114,7 @@ def _blinded() -> Iterator[Row]:
                       slow=True, beside=Row(f"{name}.encoders", "jitter", {"size": size}), budget=250e-6,
                       why=FREELY)  # fmt: skip
     yield Row(f"{AXIS}.load_encoder", "jitter", {"size": 2e-6}, reasons=DOUBTFUL, slow=True, duration=0.4,
-              states=(FIRM, LIMIT), effect="either", why=SHAKES)  # fmt: skip
+              states=(FIRM, LIMIT), expects="either", why=SHAKES)  # fmt: skip
 
 
 SEVERAL = (*_creeps(), *_encoders(), *_words(), *_lively())

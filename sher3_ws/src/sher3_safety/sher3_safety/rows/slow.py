@@ -42,7 +42,7 @@ SLOW = (
     *(Row(f"{name}.load_encoder", "drift", {"rate": 2e-5}, slow=True, duration=LONGEST) for name in (AXIS, TILT)),
     Row(f"{ROLL}.load_encoder", "drift", {"rate": 1e-3}, slow=True, duration=LONGEST),
     Row(f"{AXIS}.motor_encoder", "drift", {"rate": 2e-5}, slow=True, duration=LONGEST),
-    Row(f"{AXIS}.motor_encoder", "ramp", {"rate": 0.5}, slow=True, effect="either", why=STATED),
+    Row(f"{AXIS}.motor_encoder", "ramp", {"rate": 0.5}, slow=True, expects="either", why=STATED),
     *(Row("bus.up", "late", {"items": age}, reasons=("FEEDBACK_STALE",)) for age in (1.0, 3.0)),
     Row("bus0.up", "swap", reasons=("FEEDBACK_SWAPPED",), states=(*STATES, SIDEWAYS), quick=True),
     Row(f"{AXIS}.echo", "wrong", {"scale": 0.0}, reasons=("DRIVE_DISOBEYS",), quiet=STILL),

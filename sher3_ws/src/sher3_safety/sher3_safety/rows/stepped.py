@@ -35,30 +35,30 @@ FORCE = (
     Row("force_sensor", "garbage", reasons=("WRENCH_OUT_OF_RANGE",)),
     Row("force_sensor", "wrong", {"offset": 20.0}, reasons=("WRENCH_OUT_OF_RANGE", "WRENCH_SATURATED")),
     Row("force_sensor", "wrong", {"code": 1.0}, reasons=("WRENCH_NOT_FINITE",)),
-    Row("force_sensor", "wrong", {"scale": 0.8}, effect="either", why=NO_WITNESS),
-    Row("force_sensor", "slow", {"every": 4.0}, effect="goes on", why=HELD),
+    Row("force_sensor", "wrong", {"scale": 0.8}, expects="either", why=NO_WITNESS),
+    Row("force_sensor", "slow", {"every": 4.0}, expects="goes on", why=HELD),
     Row("force_sensor", "slow", {"every": 20.0}, reasons=STALE),
     Row("force_sensor", "delayed", {"delay": 0.1}, reasons=STALE, duration=0.25),
-    Row("force_sensor", "delayed", {"delay": 0.004}, effect="goes on", why=HELD),
-    Row("force_sensor", "intermittent", effect="either", why=HELD),
-    Row("force_sensor", "duplicated", effect="goes on", why=CURRENT, quick=True),
-    Row("force_sensor", "reordered", effect="goes on", why=CURRENT),
+    Row("force_sensor", "delayed", {"delay": 0.004}, expects="goes on", why=HELD),
+    Row("force_sensor", "intermittent", expects="either", why=HELD),
+    Row("force_sensor", "duplicated", expects="goes on", why=CURRENT, quick=True),
+    Row("force_sensor", "reordered", expects="goes on", why=CURRENT),
 )
 PEDAL = (
     Row("pedal", "off", reasons=NO_PEDAL, quick=True),
     Row("pedal", "off", release=True),
-    Row("pedal", "stuck", effect="residual", release=True, why=STUCK_PEDAL),
+    Row("pedal", "stuck", expects="residual", release=True, why=STUCK_PEDAL),
     Row("pedal", "garbage", reasons=NO_PEDAL, quick=True),
     Row("pedal", "wrong", {"offset": 2.0}, reasons=NO_PEDAL),
-    Row("pedal", "slow", {"every": 4.0}, effect="goes on", why=HELD),
+    Row("pedal", "slow", {"every": 4.0}, expects="goes on", why=HELD),
     Row("pedal", "slow", {"every": 4.0}, release=True),
     Row("pedal", "slow", {"every": 20.0}, reasons=NO_PEDAL),
     Row("pedal", "delayed", {"delay": 0.1}, reasons=NO_PEDAL, duration=0.25),
-    Row("pedal", "delayed", {"delay": 0.01}, effect="goes on", why=HELD),
+    Row("pedal", "delayed", {"delay": 0.01}, expects="goes on", why=HELD),
     Row("pedal", "delayed", {"delay": 0.02}, release=True),
-    Row("pedal", "intermittent", effect="either", why=HELD),
+    Row("pedal", "intermittent", expects="either", why=HELD),
     Row("pedal", "intermittent", release=True),
-    Row("pedal", "duplicated", effect="goes on", why=CURRENT),
+    Row("pedal", "duplicated", expects="goes on", why=CURRENT),
     Row("pedal", "reordered", release=True),
     Row("pedal.travel", "stuck", release=True, quick=True),
     Row("pedal.contact", "stuck", release=True),
@@ -72,12 +72,12 @@ def _up(line: str, silent: tuple[str, ...] = LINE_LOST, quick: bool = False) -> 
     yield Row(line, "stuck", quiet=STILL)
     yield Row(line, "garbage", reasons=("FEEDBACK_GARBLED",))
     yield Row(line, "wrong", quick=quick)
-    yield Row(line, "slow", {"every": 4.0}, effect="either", why=HELD)
+    yield Row(line, "slow", {"every": 4.0}, expects="either", why=HELD)
     yield Row(line, "slow", {"every": 20.0}, reasons=LINE_LOST)
     yield Row(line, "delayed", {"delay": 0.02}, reasons=LINE_LOST)
-    yield Row(line, "intermittent", effect="either", why=HELD)
-    yield Row(line, "duplicated", effect="goes on", why=CURRENT)
-    yield Row(line, "reordered", effect="either", why=HELD)
+    yield Row(line, "intermittent", expects="either", why=HELD)
+    yield Row(line, "duplicated", expects="goes on", why=CURRENT)
+    yield Row(line, "reordered", expects="either", why=HELD)
 
 
 def _down(line: str, quick: bool = False) -> Iterator[Row]:
@@ -89,7 +89,7 @@ def _down(line: str, quick: bool = False) -> Iterator[Row]:
     yield Row(line, "slow", {"every": 4.0}, release=True)
     yield Row(line, "delayed", {"delay": 0.02}, release=True)
     yield Row(line, "intermittent", release=True)
-    yield Row(line, "duplicated", effect="goes on", why=CURRENT)
+    yield Row(line, "duplicated", expects="goes on", why=CURRENT)
     yield Row(line, "reordered", release=True)
 
 
@@ -98,8 +98,8 @@ def _both(line: str, quick: bool = False) -> Iterator[Row]:
     yield Row(line, "off", reasons=LINE_LOST, quick=quick)
     yield Row(line, "stuck", release=True)
     yield Row(line, "delayed", {"delay": 0.02}, reasons=LINE_LOST)
-    yield Row(line, "intermittent", effect="either", why=HELD)
-    yield Row(line, "duplicated", effect="goes on", why=CURRENT)
+    yield Row(line, "intermittent", expects="either", why=HELD)
+    yield Row(line, "duplicated", expects="goes on", why=CURRENT)
 
 
 LINES = (
@@ -120,10 +120,10 @@ def _encoder(name: str, quick: bool = False) -> Iterator[Row]:
     yield Row(name, "garbage")
     yield Row(name, "wrong", {"offset": 1e-3})
     yield Row(name, "wrong", {"scale": 0.5})
-    yield Row(name, "slow", {"every": 4.0}, effect="either", why=HELD)
-    yield Row(name, "delayed", {"delay": 0.02}, effect="either", why=HELD)
-    yield Row(name, "intermittent", effect="either", why=HELD)
-    yield Row(name, "reordered", effect="either", why=HELD)
+    yield Row(name, "slow", {"every": 4.0}, expects="either", why=HELD)
+    yield Row(name, "delayed", {"delay": 0.02}, expects="either", why=HELD)
+    yield Row(name, "intermittent", expects="either", why=HELD)
+    yield Row(name, "reordered", expects="either", why=HELD)
 
 
 ENCODERS = (*_encoder(f"{AXIS}.load_encoder", quick=True), *_encoder(f"{AXIS}.motor_encoder"))
@@ -163,16 +163,16 @@ PROCESSES = (
         for name in NODES
     ),
     *(Row(f"process.{name}", "stuck", release=True) for name in NODES),
-    *(Row(f"process.{name}", "slow", {"every": 4.0}, effect="either", why=BRIEF) for name in NODES),
-    *(Row(f"process.{name}", "delayed", {"delay": 0.006}, effect="either", why=BRIEF) for name in NODES),
-    *(Row(f"process.{name}", "intermittent", effect="either", why=BRIEF) for name in NODES),
+    *(Row(f"process.{name}", "slow", {"every": 4.0}, expects="either", why=BRIEF) for name in NODES),
+    *(Row(f"process.{name}", "delayed", {"delay": 0.006}, expects="either", why=BRIEF) for name in NODES),
+    *(Row(f"process.{name}", "intermittent", expects="either", why=BRIEF) for name in NODES),
     *(Row(f"process.{name}", "off", reasons=LOST[name]) for name in NODES),
     *(
         Row(f"process.{name}", "duplicated", reasons=TWICE, quick=name == "supervisor")
         for name in NODES
         if name != "motor_driver"
     ),
-    Row("process.motor_driver", "duplicated", effect="goes on", why=REFUSED),
+    Row("process.motor_driver", "duplicated", expects="goes on", why=REFUSED),
 )
 CLOCKS = ("force_sensor", "pedal", "motor_driver")
 SAMPLES = "it takes the time of a tick from its samples; its own clock only fills in for those that stay away"
@@ -183,11 +183,11 @@ def _clock(name: str) -> Iterator[Row]:
     yield Row(name, "off")
     yield Row(name, "stuck")
     yield Row(name, "garbage")
-    yield Row(name, "slow", {"every": 4.0}, effect="either", why=HELD)
-    yield Row(name, "delayed", {"delay": 0.006}, effect="either", why=HELD)
-    yield Row(name, "intermittent", effect="either", why=HELD)
-    yield Row(name, "duplicated", effect="either", why=CURRENT)
-    yield Row(name, "reordered", effect="either", why=HELD)
+    yield Row(name, "slow", {"every": 4.0}, expects="either", why=HELD)
+    yield Row(name, "delayed", {"delay": 0.006}, expects="either", why=HELD)
+    yield Row(name, "intermittent", expects="either", why=HELD)
+    yield Row(name, "duplicated", expects="either", why=CURRENT)
+    yield Row(name, "reordered", expects="either", why=HELD)
 
 
 CLOCK = (
@@ -197,7 +197,7 @@ CLOCK = (
     *(row for name in CLOCKS for row in _clock(f"clock.{name}")),
     *(Row(f"clock.{name}", "wrong", {"offset": 0.05}) for name in ("admittance", "kinematics")),
     *(
-        Row(f"clock.{name}", "wrong", {"offset": -0.05}, effect="goes on", why=SAMPLES)
+        Row(f"clock.{name}", "wrong", {"offset": -0.05}, expects="goes on", why=SAMPLES)
         for name in ("admittance", "kinematics")
     ),
 )

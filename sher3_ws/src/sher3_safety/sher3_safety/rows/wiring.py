@@ -43,14 +43,14 @@ def _plugs() -> Iterator[Row]:
         yield from _there(f"wires.{plug}", exchanged, "miswired", quiet=alike, why=ALIKE)
         yield from _there(f"wires.{plug}", reversed_poles, "miswired")
     for part in ("power", "demand", "load_encoder", "motor_encoder"):
-        yield from _there(f"{AXIS}.{part}", {"scale": 1.02}, effect="either", why=SCALES)
+        yield from _there(f"{AXIS}.{part}", {"scale": 1.02}, expects="either", why=SCALES)
 
 
 def _zeros() -> Iterator[Row]:
     """Yield a force that nobody exerts, there before the robot is enabled."""
     for kind, name, value in FALSE:
         yield from (
-            Row("force_sensor", kind, {name: value}, effect="barred", since=since, duration=LONG, states=(NOBODY,),
+            Row("force_sensor", kind, {name: value}, expects="barred", since=since, duration=LONG, states=(NOBODY,),
                 why=BARRED)
             for since in SINCE
         )  # fmt: skip

@@ -106,7 +106,7 @@ class MatrixRun:
             return False
         if row.loses:
             self.inject(make_request(component=row.loses, fault=OFF, duration=LOST).to_json())
-        if row.effect == "goes on" and operator.state == OperatingState.ENABLED:
+        if row.expects == "goes on" and operator.state == OperatingState.ENABLED:
             self.graph.step(5)
             operator.pedal = 0.0
             self.graph.step(RELEASED)
