@@ -274,9 +274,9 @@ def test_motor_counts_velocity_and_effort_of_a_forged_frame():
 
 
 def test_heartbeat_times_are_milliseconds():
-    """Kills: seconds or us in objects 1016 and 1017: 30 ms of node 127, 50 ms."""
+    """Kills: seconds or us in objects 1016 and 1017: 27 ms of node 127, 50 ms."""
     writes = dict(required_writes(1, AxisScale.from_actuator(ROBOT.actuators[0]), default_settings()))
-    assert writes[od.HOST_HEARTBEAT] == 0x007F001E and writes[od.DRIVE_HEARTBEAT] == 50
+    assert writes[od.HOST_HEARTBEAT] == 0x007F001B and writes[od.DRIVE_HEARTBEAT] == 50
 
 
 def test_force_counts_are_per_newton_and_newton_millimetre():

@@ -50,7 +50,7 @@ def test_patience_lengthens_time_limits_and_nothing_else():
     """Every limit that differs is a longer time; strict is what drivers and control declare themselves."""
     strict, patient = checked(), checked(patience="patient")
     assert strict.control() == ControlSettings.from_robot(strict.robot(), {"motion": {"regime": "bench"}})
-    assert strict.drives().host_heartbeat_limit == 0.03
+    assert strict.drives().host_heartbeat_limit == 0.027
     for part, names in CONTROL.items():
         before, after = (getattr(run.control(), part).model_dump() for run in (strict, patient))
         assert {name for name in before if before[name] != after[name]} == set(names)

@@ -76,8 +76,8 @@ class MotorDriverSettings(_Part):
         host_id: CANopen node id of this computer, for its heartbeat.
         host_heartbeat: period of the host's heartbeat, s. The control loop itself sends it, so that a loop that hangs
             falls silent.
-        host_heartbeat_limit: silence after which a drive stops by itself, s; the travel budget bounds it. An ordinary
-            kernel under load pauses a process for 10 to 20 ms now and then.
+        host_heartbeat_limit: silence after which a drive stops by itself, s: `stall_limit`, a heartbeat and a period.
+            The travel budget bounds it: a leg that hears nobody goes on until then.
         drive_heartbeat: period of the drives' heartbeats, s.
         drive_heartbeat_limit: silence after which the host gives a drive up, s.
         feedback_limit: longest wait for the TPDOs of a tick, as a share of the period.
@@ -134,7 +134,7 @@ class MotorDriverSettings(_Part):
     caps: tuple[RegimeCaps, ...] = ()
     host_id: Annotated[int, Field(ge=1, le=127)] = 127
     host_heartbeat: Seconds = 0.005
-    host_heartbeat_limit: Seconds = 0.030
+    host_heartbeat_limit: Seconds = 0.027
     drive_heartbeat: Seconds = 0.050
     drive_heartbeat_limit: Seconds = 0.200
     feedback_limit: Annotated[float, Field(gt=0.0, lt=1.0)] = 0.8

@@ -29,7 +29,7 @@ def test_the_limits_of_a_leg_are_those_of_the_robot_file(make_rig):
     values = required_values(1, SCALE, default_settings())
     assert (values[od.LOWER_LIMIT], values[od.UPPER_LIMIT]) == (-41800, 41800)
     assert values[od.MAX_TORQUE] == 2500 and values[od.MAX_MOTOR_SPEED] == 366
-    assert values[Address(0x6065, 0)] == 500 and values[od.RPDO_TIMEOUT] == 30
+    assert values[Address(0x6065, 0)] == 500 and values[od.RPDO_TIMEOUT] == 27
     assert values[Address(0x6084, 0)] == values[od.QUICK_STOP_DECELERATION] == 54900
 
 

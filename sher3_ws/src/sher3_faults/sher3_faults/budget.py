@@ -28,7 +28,7 @@ RUNAWAY = {Regime.NEAR_TISSUE: 40e-6, Regime.FREE: 250e-6}
 """Largest tip travel of axes that go by themselves, one to five, at any speed up to the limits of their drives [m]."""
 
 
-CUT_OFF = {Regime.NEAR_TISSUE: 100e-6, Regime.FREE: 720e-6}
+CUT_OFF = {Regime.NEAR_TISSUE: 95e-6, Regime.FREE: 660e-6}
 """What is stated of the same [m] where the drive of such an axis is cut off too: it stops by its own watch alone."""
 
 

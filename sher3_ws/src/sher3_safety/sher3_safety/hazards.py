@@ -88,7 +88,7 @@ HAZARDS = (
         ("axis leaves its commands", RUNAWAY),
         "a drive that creeps and reports the force that would explain it: a leg 85 um near tissue, the tilt 75 um at "
         "its limit (`python bench/attacks.py`), until the watch of the hand, which hears the force sensor, takes its "
-        "power; one that neither hears nor is heard: 98 and 712 um (`sher3 safety budget`); one that turns its motor "
+        "power; one that neither hears nor is heard: 91 and 659 um (`sher3 safety budget`); one that turns its motor "
         "without being enabled: only safe torque off stops it",
     ),
     Hazard(

@@ -37,7 +37,7 @@ DRIVES: dict[str, Any] = {
     "supervisor_limit": 0.6,
     "stall_limit": 0.5,
 }
-"""Overrides of `MotorDriverSettings` [s; ticks]; strict: 0.03, 0.2, 6, 3, 50, 0.5, 0.03, 0.02.
+"""Overrides of `MotorDriverSettings` [s; ticks]; strict: 0.027, 0.2, 6, 3, 50, 0.5, 0.03, 0.02.
 
 Reports of a drive that was held up come late and fail their check: they are dropped, as missing ones are. Zero velocity
 is still sent to the drives once a command is `zero_age` ticks old, and motion goes on with the next command."""
