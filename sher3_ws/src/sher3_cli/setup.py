@@ -18,5 +18,5 @@ setup(
     zip_safe=False,
     description="The sher3 command",
     license="Apache-2.0",
-    entry_points={"console_scripts": ["sher3 = sher3_cli.root:main"]},
+    entry_points={"console_scripts": ["sher3 = sher3_cli.__main__:main"]},
 )

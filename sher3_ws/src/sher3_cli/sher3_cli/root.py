@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import signal
 import sys
 from collections.abc import Sequence
 from difflib import get_close_matches
@@ -128,9 +127,6 @@ def main(arguments: Sequence[str] | None = None) -> None:
         where = f"{error.filename}: " if error.filename else ""
         print(f"sher3: {where}{error.strerror or error}", file=sys.stderr)
         sys.exit(1)
-    except KeyboardInterrupt:
-        print("sher3: interrupted", file=sys.stderr)
-        sys.exit(128 + signal.SIGINT)
 
 
 def _mount(root: typer.Typer, name: str, entry: Entry) -> None:

@@ -10,6 +10,7 @@ from contextlib import contextmanager
 from functools import partial
 from types import FrameType
 
+from sher3_common.interrupts import interrupt
 from sher3_common.progress import Say, silent
 from sher3_runtime import environment
 from sher3_runtime.composed.ring import Ring, share
@@ -99,7 +100,7 @@ def launch_nodes(fleet: Fleet, settings: RunSettings, realtime: int, patience: f
     share(rings.values())
     for devices in (True, False):
         group = [process for process in processes if ("plant" in process) is devices]
-        with _signals(signal.default_int_handler):  # on a new machine it compiles for a minute
+        with _signals(interrupt):  # on a new machine it compiles for a minute
             preload(settings, [name for process in group for name in process])
         if not devices:
             make_logging_prompt()  # for all processes but the plant's, which does it meanwhile
