@@ -18,9 +18,10 @@ from sher3_machines.errors import MachineError
 from sher3_machines.intake.kind import Draft
 from sher3_machines.intake.tables import Tables
 
+from sher3_static.arm.counted import counted_view, in_words
 from sher3_static.arm.description import ArmDescription
 from sher3_static.arm.draft import draft_postures
-from sher3_static.arm.frames import fitted_view, set_up
+from sher3_static.arm.frames import set_up
 from sher3_static.arm.kinematics import Arm, arm_from_table
 from sher3_static.arm.reading import read_arm
 from sher3_static.arm.sight import LengthSight, PoseSight, PositionSight, Sight
@@ -103,7 +104,7 @@ class ArmKind(TableKind[ArmDescription]):
             what, remedy = "joint positions do not fit the arm", "correct the table"
             raise MachineError(what, value=q.shape[1], limit=len(names), remedy=remedy)
         floor = known.sight.floor(known.noise, known.noise_rotation)
-        view = fitted_view(known.arm, q, measured, rows["run"], floor, known.sight)
+        view, counts = counted_view(known.arm, q, measured, rows["run"], floor, known.sight)
         table = Table(
             name="arm",
             channel=TIP,
@@ -119,6 +120,7 @@ class ArmKind(TableKind[ArmDescription]):
             rotary=frozenset(known.arm.turning),
             free=set_up(view, "identified"),
             zeros=set_up(view, "moved"),
+            known=in_words(known.arm, counts),
         )
         return [table]
 
@@ -126,7 +128,7 @@ class ArmKind(TableKind[ArmDescription]):
         """Say how far held-out postures are off, layer by layer, and where what is left lies."""
         evidence, steps = finding.evidence, finding.attribution.steps
         folds = f"{evidence.table.view.rows} postures, one in {FOLDS} held out in turn"
-        notes = [f"{folds}; floor: the stated noise of a measured pose"]
+        notes = [*evidence.table.known, f"{folds}; floor: the stated noise of a measured pose"]
         labels = ["measurement frames only"]
         for layer, after in zip(layers(evidence.table.pages), steps[1:], strict=False):
             count = len(after.terms) - len(evidence.nuisance)
