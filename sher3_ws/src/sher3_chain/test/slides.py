@@ -22,11 +22,11 @@ def driven(seconds=16.0, coulomb=0.0, viscous=0.0, offset=0.0, limit=np.inf, fin
     q, v, last = float(reference(0.0)), 0.0, float(reference(0.0))
     rows = np.empty((n, 3))
     for k in range(n):
-        read = COUNT * round(q / COUNT)
-        u = float(np.clip(KP * (reference(k * PERIOD) - read) - KD * (read - last) / PERIOD, -limit, limit))
-        rows[k], last = (read, reference(k * PERIOD), u), read
+        read, asked = COUNT * round(q / COUNT), float(reference(k * PERIOD))
+        u = min(max(KP * (asked - read) - KD * (read - last) / PERIOD, -limit), limit)
+        rows[k], last = (read, asked, u), read
         for _ in range(fine):
-            a = (u - viscous * v - coulomb * np.tanh(v / 2e-4) - offset) / mass
+            a = (u - viscous * v - coulomb * float(np.tanh(v / 2e-4)) - offset) / mass
             q, v = q + h * (v + 0.5 * h * a), v + h * a
     return rows
 

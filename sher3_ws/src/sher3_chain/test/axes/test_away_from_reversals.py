@@ -15,12 +15,12 @@ def motor(seconds=16.0, fine=10):
     t = np.arange(0.0, seconds, PERIOD)
     asked = 3.0 * np.sin(1.26 * t) + np.sin(5.65 * t + 1.0) + 0.2 * np.sin(19.5 * t + 2.0)
     pace, out, h = np.gradient(asked, PERIOD), np.empty((len(t), 2)), PERIOD / fine
-    q, v = asked[0], 0.0
-    for k, (r, w) in enumerate(zip(asked, pace, strict=True)):
+    q, v = float(asked[0]), 0.0
+    for k, (r, w) in enumerate(zip(asked.tolist(), pace.tolist(), strict=True)):
         torque = (r - q) + 0.03 * (w - v)
         out[k] = q, torque
         for _ in range(fine):
-            v += h * (torque - DRY * np.tanh(v / 0.02) - VISCOUS * v) / INERTIA
+            v += h * (torque - DRY * float(np.tanh(v / 0.02)) - VISCOUS * v) / INERTIA
             q += h * v
     return out
 

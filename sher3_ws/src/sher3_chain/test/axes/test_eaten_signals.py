@@ -26,10 +26,10 @@ def oscillator(seed, noise):
     force = np.fft.irfft(power, n)
     force *= 0.1 / force.std()
     place, x, v, h = np.empty(n), 0.0, 0.0, period / fine
-    for k in range(n):
+    for k, pushed in enumerate(force.tolist()):
         place[k] = x
         for _ in range(fine):
-            v += h * (pace**2 * (force[k] - x) - 0.1 * pace * v)
+            v += h * (pace**2 * (pushed - x) - 0.1 * pace * v)
             x += h * v
     signals = {**columns("position"), **columns("effort", unit="N")}
     axis = {"motion": "linear", "signals": signals, "command_law": {"kind": "force", "held": True}, "mass": pace**-2}
@@ -43,10 +43,10 @@ def servo(lag, top, seed):
     rng, period, fine = np.random.default_rng(seed), 0.02, 20
     asked = np.repeat(rng.uniform(-0.6, 0.6, size=500), 4)
     place, x = np.empty(len(asked)), 0.0
-    for k, goal in enumerate(asked):
+    for k, goal in enumerate(asked.tolist()):
         place[k] = x
         for _ in range(fine):
-            x += period / fine * np.clip((goal - x) / lag, -top, top)
+            x += period / fine * min(max((goal - x) / lag, -top), top)
     signals = columns("position", "reference", unit="rad")
     axis = {"motion": "rotary", "signals": signals, "command_law": {"kind": "position"}, "encoder_resolution": 1e-3}
     return verdict_of(axis, period, position=1e-3 * np.round(place / 1e-3), reference=asked)

@@ -20,10 +20,11 @@ def swung(lag=0.0, delay=0.0, seed=0, rate=100, viscous=0.05, dry=0.05, weight=1
         share = 1.0 - np.exp(-FINE / lag)
         acts = lfilter([share], [1.0, share - 1.0], acts)
     q, v, place = 0.0, 0.0, np.empty(len(t))
-    for k, force in enumerate(acts):
+    rub = FINE / mass * dry
+    for k, force in enumerate(acts.tolist()):
         place[k] = q
-        free = v + FINE / mass * (force - weight * np.sin(q) - viscous * v)
-        v = free - np.clip(free, -FINE / mass * dry, FINE / mass * dry)
+        free = v + FINE / mass * (force - weight * float(np.sin(q)) - viscous * v)
+        v = free - min(max(free, -rub), rub)
         q += FINE * v
     every = 1000 // rate
     count = 2.0 * np.pi / 4096

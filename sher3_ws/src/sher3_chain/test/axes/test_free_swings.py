@@ -28,7 +28,7 @@ def swing(coulomb, start=2.9, seconds=40.0):
     for _ in range(int(seconds / PERIOD)):
         path.append(q)
         for _ in range(FINE):
-            a = -(ARM * np.sin(q + 0.5 * h * v) + coulomb * np.tanh(v / 1e-3)) / INERTIA
+            a = -float(ARM * np.sin(q + 0.5 * h * v) + coulomb * np.tanh(v / 1e-3)) / INERTIA
             q, v = q + h * (v + 0.5 * h * a), v + h * a
     return np.array(path)
 

@@ -20,17 +20,18 @@ def controlled(law, seed=3, seconds=12.0, smooth=False):
     """
     t, (a, b) = np.arange(0.0, seconds, PERIOD), np.random.default_rng(seed).uniform(0.0, 6.0, 2)
     reference = 0.04 * np.sin(1.3 * t + a) + 0.015 * np.sin(4.1 * t + b)
+    reference = reference.tolist()
     x, v, last = reference[0], (reference[1] - reference[0]) / PERIOD, reference[0]
     errors, speeds, rows = [], [], np.empty((len(t), 3))
     for k in range(len(t)):
-        read = COUNT * np.round(x / COUNT)
+        read = COUNT * round(x / COUNT)
         pace = (read - last) / PERIOD
         errors.append(reference[k] - read)
         speeds.append(0.7 * speeds[-1] + 0.3 * pace if smooth and speeds else pace)
-        u = law(np.array(errors[-40:]), np.array(speeds[-40:]))
+        u = float(law(np.array(errors[-40:]), np.array(speeds[-40:])))
         rows[k], last = (read, reference[k], u), read
         for _ in range(20):
-            v += PERIOD / 20.0 * (u - 8.0 * np.tanh(v / 2e-4) - 30.0 * v) / MASS
+            v += PERIOD / 20.0 * (u - 8.0 * float(np.tanh(v / 2e-4)) - 30.0 * v) / MASS
             x += PERIOD / 20.0 * v
     return rows
 

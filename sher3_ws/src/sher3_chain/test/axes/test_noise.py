@@ -17,13 +17,14 @@ def slide(period, noise, seed=0, seconds=30.0):
     h, n = period / sub, int(seconds / period)
     t = period * np.arange(n)
     reference = 0.08 * np.sin(1.3 * t + seed) + 0.03 * np.sin(4.1 * t + 0.4) + 0.006 * np.sin(9.0 * t)
-    q, v, last, rows = reference[0], 0.0, reference[0], np.empty((n, 3))
+    asked, v, rows = reference.tolist(), 0.0, np.empty((n, 3))
+    q = last = asked[0]
     for k in range(n):
         read = q + noise * rng.normal()
-        u = KP * (reference[k] - read) - KD * (read - last) / period
-        rows[k], last = (read, reference[k], u), read
+        u = KP * (asked[k] - read) - KD * (read - last) / period
+        rows[k], last = (read, asked[k], u), read
         for _ in range(sub):
-            v += h * (u - VISCOUS * v - COULOMB * np.tanh(v / 1e-4)) / MASS
+            v += h * (u - VISCOUS * v - COULOMB * float(np.tanh(v / 1e-4))) / MASS
             q += h * v
     return AxesRun("run", period, {"slide": dict(zip(("position", "reference", "command"), rows.T, strict=True))})
 

@@ -1,5 +1,7 @@
 """A slide that is driven against its stops: what they push with is no cause, be its range stated or found."""
 
+import math
+
 import numpy as np
 import pytest
 from sher3_diagnosis import diagnose
@@ -16,12 +18,13 @@ def thrown(coulomb, seconds=16.0, fine=40):
     rows = np.empty((n, 3))
     for k in range(n):
         read = COUNT * round(q / COUNT)
-        u = KP * (reference(k * PERIOD) - read) - KD * (read - last) / PERIOD
-        rows[k], last = (read, reference(k * PERIOD), u), read
+        asked = float(reference(k * PERIOD))
+        u = KP * (asked - read) - KD * (read - last) / PERIOD
+        rows[k], last = (read, asked, u), read
         for _ in range(fine):
             deep = max(abs(q) - END, 0.0)
-            stop = -np.sign(q) * STIFF * deep - BRAKES * v * (deep > 0.0)
-            v += h * (u + stop - coulomb * np.tanh(v / 2e-4)) / MASS
+            stop = -math.copysign(STIFF * deep, q) - BRAKES * v * (deep > 0.0)
+            v += h * (u + stop - coulomb * float(np.tanh(v / 2e-4))) / MASS
             q += h * v
     return rows
 

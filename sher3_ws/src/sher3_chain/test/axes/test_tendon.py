@@ -15,20 +15,20 @@ COUNT = 1e-6
 
 def rubbed(wrap, cable=4000.0, spring=900.0, slack=16.0, pieces=6):
     """Joint and tension at the motor: springs in line, whose nodes rub in proportion to the tension, by relaxation."""
-    stiff, rub, u = cable * pieces, wrap / (pieces - 1), np.zeros(pieces + 1)
-    inner = np.arange(1, pieces)
+    stiff, rub, u = cable * pieces, wrap / (pieces - 1), [0.0] * (pieces + 1)
     out = []
-    for place in MOTOR:
+    for place in MOTOR.tolist():
         u[0] = place
         for _ in range(300):
             moved = 0.0
-            for nodes in (inner[::2], inner[1::2]):
-                left = slack + stiff * (u[nodes - 1] - u[nodes])
-                right = slack + stiff * (u[nodes] - u[nodes + 1])
-                over = np.abs(left - right) - np.abs(0.5 * (left + right)) * rub
-                step = np.where(over > 0.0, np.sign(left - right) * over / (2.0 * stiff), 0.0)
-                u[nodes] += step
-                moved = max(moved, float(np.abs(step).max()))
+            for node in (*range(1, pieces, 2), *range(2, pieces, 2)):
+                left = slack + stiff * (u[node - 1] - u[node])
+                right = slack + stiff * (u[node] - u[node + 1])
+                over = abs(left - right) - abs(0.5 * (left + right)) * rub
+                if over > 0.0:
+                    step = over / (2.0 * stiff)
+                    u[node] += step if left > right else -step
+                    moved = max(moved, step)
             u[-1] = stiff * u[-2] / (stiff + spring)
             if moved < 1e-9:
                 break

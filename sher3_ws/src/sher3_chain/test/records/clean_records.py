@@ -130,7 +130,7 @@ def pendulum() -> Clean:
     for k in range(40_000):
         if k % 40 == 0:
             rows.append(q)
-        v += 2.5e-4 * (-arm * np.sin(q) - dry * np.tanh(v / 1e-3)) / inertia
+        v += 2.5e-4 * float(-arm * np.sin(q) - dry * np.tanh(v / 1e-3)) / inertia
         q += 2.5e-4 * v
     columns = {"t": 0.01 * np.arange(len(rows)), "position": 1e-4 * np.round(np.array(rows) / 1e-4)}
     axis = {
