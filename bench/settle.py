@@ -133,7 +133,7 @@ def settled(seed: int, kind: str, robot: Robot) -> Settled | None:
             f"{' or '.join(map(named, together))} {after[-1][0]:.2f} {'right' if right else 'wrong'}"
         )
         asked = verdict.next_experiment
-        if after[-1][0] >= SETTLED or (asked and len(together) == len(asked.separates)):
+        if after[-1][0] >= SETTLED or verdict.untold:
             break
     print(said, flush=True)
     return Settled(bet.probability, expected, reached[0], tuple(after))

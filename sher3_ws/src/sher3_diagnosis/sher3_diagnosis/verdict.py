@@ -226,6 +226,13 @@ class Verdict(_Model):
         found = [a for a in first if a.causes and all(f"{c.effect}:{c.actuator}" in alike for c in a.causes)]
         return found if len(found) > 1 and found[0] is self.places[0].bet else []
 
+    @property
+    def untold(self) -> list[str]:
+        """The rivals of the next experiment, where all are one answer: none that was rehearsed tells them apart."""
+        one = {c.effect for a in self.one_answer for c in a.causes}
+        rivals = self.next_experiment.separates if self.next_experiment else []
+        return rivals if one >= set(rivals) else []
+
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False, populate_by_name=True)
 
     @model_validator(mode="after")

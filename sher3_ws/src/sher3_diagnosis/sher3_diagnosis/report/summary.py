@@ -202,9 +202,8 @@ def command(
 
 def _next(verdict: Verdict, reporter: Reporter[Any], case: str, folder: str, options: str) -> str:
     e = verdict.next_experiment
-    one = {c.effect for a in verdict.one_answer for c in a.causes}
-    if e is not None and one >= set(e.separates):
-        return f"no experiment that was rehearsed tells {' / '.join(words(i).lower() for i in e.separates)} apart"
+    if verdict.untold:
+        return f"no experiment that was rehearsed tells {' / '.join(words(i).lower() for i in verdict.untold)} apart"
     if e is not None:
         added = f", with {e.added}," if e.added else ""
         expected = "" if e.expected_odds is None else f"; expected odds {share(e.expected_odds)}"
