@@ -6,6 +6,7 @@ import sys
 from pathlib import Path
 
 import numpy as np
+import pyarrow.parquet as pq
 import pytest
 import sher3.gap as gap
 from data_sets import write_data_set
@@ -62,6 +63,19 @@ def test_a_column_for_each_joint_is_read_like_a_list(tmp_path):
         folder = write_data_set(tmp_path / f"set{number}", "v3.0", RATE, ["pan", "lift"], given, flat=flat)
         answer = gap.from_lerobot(folder)
         assert {(c.family, c.actuator) for c in answer.causes} == {("timing", "lift")}
+
+
+def test_features_are_read_as_libraries_of_policies_name_them(tmp_path):
+    """`state` and `actions`, in `meta/info.json` and in the files."""
+    folder = write_data_set(tmp_path / "set", "v2.1", RATE, ["pan", "lift"], [episode(0), episode(1)])
+    named = {"observation.state": "state", "action": "actions"}
+    info = json.loads((folder / "meta/info.json").read_text())
+    info["features"] = {named.get(name, name): x for name, x in info["features"].items()}
+    (folder / "meta/info.json").write_text(json.dumps(info))
+    for file in folder.rglob("*.parquet"):
+        table = pq.read_table(file)
+        pq.write_table(table.rename_columns([named.get(name, name) for name in table.column_names]), file)
+    assert {(c.family, c.actuator) for c in gap.from_lerobot(folder).causes} == {("timing", "lift")}
 
 
 def test_periods_that_a_clock_missed_are_named_with_their_size(tmp_path):

@@ -33,6 +33,8 @@ WHOLE, WHOLE_SHARE = 0.05, 0.9
 """How near to a whole multiple of the count a step must be, and the share of steps that must be."""
 EPOCH = (9e8, 4e9)
 """Seconds since 1970 of the years 1998 to 2096, which dates are read as."""
+DECADE = 3e8
+"""Seconds that a record covers at most: a counter may grow through `EPOCH`, and does so from nothing."""
 USUAL_RATES = (5.0, 20_000.0)
 """Rates, Hz, between which a clock is believed: of servo loops, and of slow loggers."""
 GROWING = 0.98
@@ -62,6 +64,12 @@ def clock_of(tables: Tables, guesses: list[str]) -> str:
     if even:
         guesses.append(f"time is the column {even[0]!r}, because it grows evenly")
         return even[0]
+    dated = [n for n, x in growing.items() if EPOCH[0] < x[-1] < EPOCH[1] and np.ptp(x) < DECADE]
+    if dated:
+        guesses.append(
+            f"time is the column {dated[0]!r}, because it grows and reads as a date of today, in s since 1970"
+        )
+        return dated[0]
     stamps = next((n for n, x in tables.items() if x.ndim == 1 and len(x) and tells_time(n)), None)
     if stamps is not None:
         ends = f"{tables[stamps][0]:.6g} to {tables[stamps][-1]:.6g}"

@@ -78,7 +78,9 @@ SHARES = ("%", "1")
 """Units of what a drive is told, where its name speaks of no place."""
 PLACES = ("m", "cm", "mm", "um", "rad", "mrad", "deg", "arcmin", "arcsec", "rev", "count")
 """Units of a position."""
-CLEAR = vocabulary("deg degree degrees rad radians rpm mm ms msec millis us usec micros sec secs seconds")
+CLEAR = vocabulary(
+    "deg degree degrees rad radians rpm mm ms msec millis milliseconds us usec micros microseconds sec secs seconds"
+)
 """Words that are nothing but a unit: a name by themselves, `ms,deg,rpm`, or at its end, `speedRpm`."""
 DRIVING = vocabulary("motor mot qm thetam antrieb drive schrittzähler steps schritte")
 """Words for the position on the side of the drive, of an axis with two positions; the other one is the load's."""

@@ -250,6 +250,17 @@ def test_a_row_number_for_a_time_is_said(tmp_path):
     assert any("grows by one a row" in guess and "--rate" in guess for guess in found.guesses)
 
 
+def test_uneven_dates_of_today_and_columns_of_milliseconds_are_times(tmp_path):
+    """Stamps of a socket, uneven and with pauses, under a name that says nothing."""
+    steps = np.random.default_rng(0).exponential(0.005, len(TIME))
+    found = written(tmp_path, "at,angle", 1.6336e9 + np.cumsum(steps), np.sin(TIME))
+    assert any("'at', because it grows and reads as a date" in guess for guess in found.guesses)
+    with pytest.raises(MachineError, match="no column looks like a time"):
+        written(tmp_path, "at,angle", np.cumsum(steps), np.sin(TIME))
+    found = written(tmp_path, "milliseconds,angle", 1e3 * np.cumsum(steps), np.sin(TIME))
+    assert parse_yaml(found.text)["time"] == {"column": "milliseconds", "unit": "ms"}
+
+
 @pytest.mark.parametrize("header", ["t,q [rad]", "t,q_mrad"])
 def test_a_motor_of_many_turns_has_a_draft_that_can_be_imported(tmp_path, header):
     """198 rad: a twisted string takes thirty turns."""

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from rosbags.rosbag2 import Writer
 from rosbags.rosbag2.enums import StoragePlugin
-from rosbags.typesys import Stores, get_typestore
+from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 from sher3_machines import MachineError, import_case, open_case
 from sher3_machines.intake.tables import read_tables
 
@@ -77,6 +77,28 @@ def test_topics_are_tables_and_joints_too(tmp_path, storage):
     assert found["twist/linear"].shape == found["twist/angular"].shape == (500, 3)
     assert found["ft/stamp"][1] == pytest.approx(1000.004, abs=1e-6)
     assert found["ft/received"][1] - found["ft/stamp"][1] == pytest.approx(0.005, abs=1e-6)
+
+
+SAMPLES = """float32[] milliseconds
+float32[] position
+float32[] torque
+float32[] gains"""
+
+
+@pytest.mark.parametrize("entries, rows", [(100, 300), (20, 3)])
+def test_samples_sent_in_one_piece_are_rows(tmp_path, entries, rows):
+    """Three messages of lists with their own clock; short lists are what joints have at one moment."""
+    store = get_typestore(Stores.ROS2_JAZZY)
+    store.register(get_types_from_msg(SAMPLES, "tests/msg/Samples"))
+    with Writer(tmp_path / "bag", version=9) as writer:
+        connection = writer.add_connection("/pan", "tests/msg/Samples", typestore=store)
+        for k in range(3):
+            t = np.arange(entries, dtype=np.float32) + k * entries
+            message = store.types["tests/msg/Samples"](t, np.sin(t), np.cos(t), np.zeros(0, np.float32))
+            writer.write(connection, k * 1_000_000_000, store.serialize_cdr(message, "tests/msg/Samples"))
+    tables = read_tables(tmp_path / "bag")
+    assert len(tables["pan/position"]) == rows and ("pan/received" in tables) == (rows == 3)
+    np.testing.assert_allclose(tables["pan/torque"], np.cos(tables["pan/milliseconds"]), atol=1e-6)
 
 
 def test_an_mcap_file_alone_is_a_bag(tmp_path):

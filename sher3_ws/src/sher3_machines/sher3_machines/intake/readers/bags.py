@@ -4,6 +4,7 @@
 and `TOPIC/received` that of the recording, s. A message with one field beside its header is that field: the columns of
 a WrenchStamped are `force` and `torque` (n, 3), of a PoseStamped `position` (n, 3) and `orientation` (n, 4; x y z w),
 of a TwistStamped `linear` and `angular`. Of a JointState each joint is a table of its own: `TOPIC/JOINT/position`.
+A message of long lists, one of which grows, has a row for each entry: samples with their own clock, sent in one piece.
 """
 
 from __future__ import annotations
@@ -39,9 +40,9 @@ def read_bag(path: Path) -> dict[str, Array]:
                 raise ValueError(f"{reader.message_count} messages, more than {MAX_MESSAGES}")
             for connection, received, raw in reader.messages():
                 message = reader.deserialize(raw, connection.msgtype)
-                for table, fields in tables_of(connection.topic.lstrip("/"), message):
+                for table, fields in tables_of(connection.topic.lstrip("/"), message, received * NANO):
                     into = rows.setdefault(table, {})
-                    for name, value in {**fields, "received": received * NANO}.items():
+                    for name, value in fields.items():
                         into.setdefault(name, []).append(value)
     except ValueError:
         raise
@@ -50,11 +51,12 @@ def read_bag(path: Path) -> dict[str, Array]:
     return {f"{table}/{name}": x for table, found in rows.items() for name, x in columns(found).items()}
 
 
-def tables_of(topic: str, message: Any) -> Iterator[tuple[str, dict[str, Any]]]:
-    """Yield the tables that a message is a row of, with its fields."""
+def tables_of(topic: str, message: Any, received: float) -> Iterator[tuple[str, dict[str, Any]]]:
+    """Yield the tables that a message is a row of, with its fields and when it was received, s."""
     fields = {name: getattr(message, name) for name in message.__dataclass_fields__ if not name.startswith("__")}
     header = fields.pop("header", None)
     stamp = {} if header is None else {"stamp": header.stamp.sec + NANO * header.stamp.nanosec}
+    stamp["received"] = received
     if {"name", *JOINTS} <= fields.keys():
         for i, joint in enumerate(fields["name"]):
             found = {x: float(fields[x][i]) for x in JOINTS if i < len(fields[x])}
@@ -64,7 +66,19 @@ def tables_of(topic: str, message: Any) -> Iterator[tuple[str, dict[str, Any]]]:
         (only,) = fields.values()
         if hasattr(only, "__dataclass_fields__"):
             fields = {name: getattr(only, name) for name in only.__dataclass_fields__ if not name.startswith("__")}
-    yield topic, {**stamp, **dict(_leaves("", fields))}
+    samples = _samples(fields)
+    for row in zip(*samples.values(), strict=True):
+        yield topic, dict(zip(samples, map(float, row), strict=True))
+    if not samples:
+        yield topic, {**stamp, **dict(_leaves("", fields))}
+
+
+def _samples(fields: dict[str, Any]) -> dict[str, Array]:
+    """Return the lists of a message by name where they are samples: of one length (n,), and one of them a clock."""
+    flat = {name: x for name, x in fields.items() if isinstance(x, np.ndarray) and x.dtype.kind in "fiu"}
+    lists = {name: x for name, x in flat.items() if x.ndim == 1 and x.size > LONGEST}
+    clocks = [x for x in lists.values() if (x[1:] > x[:-1]).all()]
+    return lists if clocks and len({x.size for x in lists.values()}) == 1 < len(lists) else {}
 
 
 def _leaves(name: str, value: Any) -> Iterator[tuple[str, Any]]:
@@ -85,7 +99,7 @@ def _leaves(name: str, value: Any) -> Iterator[tuple[str, Any]]:
 
 def columns(found: dict[str, list[Any]]) -> dict[str, Array]:
     """Return the columns (rows, ...) of a table that every row has, in the same shape."""
-    rows = len(found["received"])
+    rows = max(map(len, found.values()))
     out = {}
     for name, values in found.items():
         if len(values) == rows and len({np.shape(x) for x in values}) == 1:

@@ -22,6 +22,8 @@ INFO = Path("meta/info.json")
 SIGNALS = {"observation.state": "pos", "action": "pos", "observation.velocity": "vel", "observation.effort": "effort"}
 """Feature of joints -> word behind the name of each."""
 NEEDED = ("observation.state", "action")
+SPELLED = {"observation.state": "state", "action": "actions"}
+"""What libraries of policies write in place of the format's own names (openpi, https://github.com/Physical-Intelligence)."""
 ROWS = ("timestamp", "frame_index", "episode_index")
 """Columns of every data set."""
 VERSIONS = ("v2.0", "v2.1", "v3")
@@ -67,7 +69,8 @@ def read_data_set(path: Path, wanted: Collection[int] = ()) -> DataSet:
     info = _info(path)
     features = {name: names for name in SIGNALS if (names := _joints(info, name))}
     flat = [f"{name}.{joint}" for name in features if name not in info["features"] for joint in features[name]]
-    rows = _rows(path, [*ROWS, *(name for name in features if name in info["features"]), *flat])
+    spelled = {name: info["spelled"].get(name, name) for name in features if name in info["features"]}
+    rows = _rows(path, spelled | {name: name for name in (*ROWS, *flat)})
     found, nominal = {}, True
     for number in np.unique(rows["episode_index"]).astype(int):
         if wanted and number not in wanted:
@@ -101,9 +104,12 @@ def _info(path: Path) -> dict[str, Any]:
     if not version.startswith(VERSIONS):
         remedy = "convert it with the library that wrote it"
         raise MachineError(f"{path}: version is not read", value=version, limit=", ".join(VERSIONS), remedy=remedy)
+    known = info["features"]
+    info["spelled"] = {name: other for name, other in SPELLED.items() if other in known and not _joints(info, name)}
+    info["features"] = known | {name: known[other] for name, other in info["spelled"].items()}
     missing = [name for name in NEEDED if not _joints(info, name)]
     if missing:
-        have = ", ".join(info["features"])
+        have = ", ".join(known)
         remedy = "give a data set with what the joints were told and what they did"
         raise MachineError(f"{path}: no feature {missing[0]!r}", limit=f"features: {have}", remedy=remedy)
     return info
@@ -128,8 +134,8 @@ def _column(feature: str, joint: str) -> str:
     return f"{feature}/{joint.replace('/', '_').removesuffix('.' + word)}.{word}"
 
 
-def _rows(path: Path, columns: list[str]) -> dict[str, Array]:
-    """Return columns of all files below `data/`, one after the other."""
+def _rows(path: Path, columns: Mapping[str, str]) -> dict[str, Array]:
+    """Return columns of all files below `data/`, one after the other, by name; `columns`: name -> column."""
     try:
         parquet = import_module("pyarrow.parquet")
     except ImportError as error:
@@ -140,10 +146,10 @@ def _rows(path: Path, columns: list[str]) -> dict[str, Array]:
     if not files:
         raise MachineError(f"{path}: no Parquet file below data/", remedy="fetch the data set whole")
     try:
-        tables = [parquet.read_table(file, columns=columns) for file in files]
-        return {name: np.concatenate([_plain(table[name]) for table in tables]) for name in columns}
+        tables = [parquet.read_table(file, columns=[*columns.values()]) for file in files]
+        return {name: np.concatenate([_plain(table[x]) for table in tables]) for name, x in columns.items()}
     except (OSError, KeyError, ValueError) as error:  # pyarrow's own errors are of these
-        value, need = str(error).splitlines()[0][:200], f"the columns {', '.join(columns)} in every file"
+        value, need = str(error).splitlines()[0][:200], f"the columns {', '.join(columns.values())} in every file"
         raise MachineError(f"{path}: cannot be read", value=value, limit=need, remedy="check the data set") from error
 
 
