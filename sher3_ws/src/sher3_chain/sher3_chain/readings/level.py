@@ -20,16 +20,19 @@ itself."""
 def at_a_level(effort: Array) -> Mask:
     """Return (n,) True where a reading lies at its largest or least value for a stretch: it or the drive is limited.
 
+    Zero is no limit: a load without a sign, or one that a joint is let down under, is often exactly nothing.
     One that goes in steps everywhere, as a test with constant forces or few bits does, is at no limit; nor is one that
     only passes from one level to the other, be it in samples between the two, as on a clock that is no drive's.
     """
+    zero = effort == 0.0
     out = np.zeros(len(effort), dtype=bool)
     for level in (float(effort.max()), float(effort.min())):
         at = effort == level
-        if at.mean() >= PINNED and longest_run(at) >= LONGEST and not at.all():
+        if level and at.mean() >= PINNED and longest_run(at) >= LONGEST and not at.all():
             out |= at
-    rest = ~out[1:] & ~out[:-1]
-    stepped = longest_run(~out) < LONGEST or float(np.mean(np.diff(effort)[rest] == 0.0)) > STEPS
+    between = ~out & ~zero
+    repeats = np.diff(effort)[between[1:] & between[:-1]] == 0.0
+    stepped = longest_run(between) < LONGEST or float(np.mean(repeats)) > STEPS
     return np.zeros_like(out) if stepped else out
 
 

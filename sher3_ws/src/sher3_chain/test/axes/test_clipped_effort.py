@@ -56,6 +56,14 @@ def test_constant_forces_and_few_bits_are_no_level():
     assert not at_a_level(polled).any(), "a duty of two levels, put on another clock"
 
 
+@pytest.mark.parametrize("sense", [1.0, -1.0])
+def test_a_load_of_nothing_is_no_level(sense):
+    """A weight as large as the friction: down it goes by itself, and the drive gives exactly nothing."""
+    load = np.maximum(np.sin(np.arange(4000) / 300.0), 0.0)
+    assert not at_a_level(sense * load).any()
+    assert at_a_level(sense * np.minimum(load, 0.8)).mean() == pytest.approx(0.2, abs=0.02), "a limit beside it"
+
+
 def test_a_command_that_lies_flat_too_is_what_the_drive_gives():
     wave = np.minimum(np.sin(np.arange(4000) / 300.0), 0.8)
     assert limited_by_reading({"effort": wave, "command": wave}) is None
