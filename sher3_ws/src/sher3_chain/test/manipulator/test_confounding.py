@@ -4,7 +4,13 @@ import numpy as np
 import pytest
 from causes_at import caused
 from lifts import machine, motion, needed, run_of
-from sher3_chain.manipulator.causes.confounding import beyond_motion, confounded, confounded_in
+from sher3_chain.manipulator.causes.confounding import (
+    beyond_motion,
+    confounded,
+    confounded_in,
+    confounding_notes,
+    in_step,
+)
 
 
 def test_columns_that_nearly_cancel_are_named():
@@ -40,3 +46,18 @@ def test_gain_against_weight_asks_for_a_known_weight_and_friction_does_not():
     ]
     (told,) = beyond_motion(causes)
     assert told.startswith("no motion tells torque constant and gravity load on A5 apart, a known weight does")
+
+
+@pytest.mark.parametrize(("share", "together"), [(0.0, True), (0.02, True), (0.5, False)])
+def test_joints_that_move_in_step_are_told(tmp_path, share, together):
+    """Two joints on one motion, whatever the travel and the middle of each, with a share of a motion of its own."""
+    t = np.arange(4000) * 0.005
+    paces = np.array([1.3, 1.3]), np.array([1.3, 2.9])
+    travel, middle = np.array([0.05, 0.7]), np.array([0.2, -0.4])
+    each = [np.sin(p * t[:, None]) * w for p, w in zip(paces, (1.0 - share, share), strict=True)]
+    q = middle + travel * sum(each)
+    v = travel * sum(p * np.cos(p * t[:, None]) * w for p, w in zip(paces, (1.0 - share, share), strict=True))
+    a = -travel * sum(p**2 * x for p, x in zip(paces, each, strict=True))
+    evidence = machine(tmp_path / "lift.urdf").gather([run_of(q, needed(q, v, a))])[0]
+    assert in_step(evidence) == together
+    assert any("moved in step" in note for note in confounding_notes(evidence)) == together

@@ -25,6 +25,10 @@ WEIGH = (
 )
 FEEL = "the force does: record the motor's current, or a sensor's reading, with the same motion, as `effort`"
 """What tells causes apart that no motion does."""
+IN_STEP = (
+    "the joints moved in step: what one link does to them others do nearly as well, and no wrong link is told; a "
+    "motion of one joint after the other, or of each at a rate of its own, tells it"
+)
 GAIN, WEIGHT, PAYLOAD = "drive gain", "weight", "payload"
 """Quantities that multiply one force, see `Effect.scales`."""
 
@@ -87,13 +91,27 @@ def _columns(evidence: ArmMotionEvidence, view: MotionView, joint: str) -> dict[
     return out
 
 
+def in_step(evidence: ArmMotionEvidence) -> bool:
+    """Return whether the judged joints moved as one: what a link does to one of them is seen in every other as well.
+
+    Of their places, each of length one, hardly anything is left beside one motion that all share.
+    """
+    rows = [evidence.records[0].row(joint) for joint in evidence.judged]
+    places = np.concatenate([view.position[:, rows] for view in evidence.records])
+    places = places - places.mean(axis=0)
+    length = np.linalg.norm(places, axis=0)
+    size = np.linalg.svd(places[:, length > 0.0] / length[length > 0.0], compute_uv=False)
+    return len(size) > 1 and bool(size[1] < CONFOUNDED * size[0])
+
+
 def confounding_notes(evidence: ArmMotionEvidence) -> list[str]:
     """Return in words what cannot be told apart, joint by joint; the same of several joints in one sentence."""
     found: dict[frozenset[str], list[str]] = {}
     for joint in evidence.judged:
         for group in confounded_in(evidence, joint):
             found.setdefault(group, []).append(joint)
-    return [
+    step = [IN_STEP] if in_step(evidence) else []
+    return step + [
         f"{', '.join(joints)}: the recorded motion cannot tell {_listed(sorted(g))} apart"
         for g, joints in found.items()
     ]

@@ -26,6 +26,7 @@ from sher3_diagnosis.thresholds import JACKKNIFE, NEEDED, PRICE
 from sher3_diagnosis.verdict import Cause
 from sher3_effects import pages
 
+from sher3_chain.manipulator.causes.confounding import in_step
 from sher3_chain.manipulator.evidence import ArmMotionEvidence, channel_of
 from sher3_chain.manipulator.model import PARAMETERS, ArmModel
 from sher3_chain.manipulator.rigid.physical import can_exist
@@ -60,7 +61,8 @@ def wrong_links(
 ) -> list[Law]:
     """Return the links that are worth their numbers beside plain laws of every joint, with what was found of them.
 
-    None where they do not leave clearly less than the plain laws alone, or than one of the `others`.
+    None where they do not leave clearly less than the plain laws alone, or than one of the `others`; nor where the
+    joints moved in step: the numbers of several links then cancel.
 
     Args:
         evidence: of the arm.
@@ -69,7 +71,7 @@ def wrong_links(
         others: fits that explain as well, with fewer numbers.
     """
     free = page.free()
-    if free is None:
+    if free is None or in_step(evidence):
         return []
     left = level(evidence, fit(evidence.data, _terms(evidence, laws)))
     for i in range(ROUNDS):
