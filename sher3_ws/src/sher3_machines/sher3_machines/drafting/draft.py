@@ -11,6 +11,7 @@ import numpy as np
 from sher3_common import dump_yaml
 from sher3_diagnosis.channel import Array
 
+from sher3_machines.drafting.echoes import measured
 from sher3_machines.drafting.guesses import (
     NAMED,
     clock_of,
@@ -108,7 +109,7 @@ def drafted(path: Path, tables: Tables, rate: float | None, guesses: list[str], 
     period = 1.0 / rate if rate else period_of(tables[str(clock)]) * TIME_UNITS[time["unit"]]
     roles = placed(tables, clock, guesses, held)
     groups, left = together(roles)
-    groups = paired(once(groups, tables, guesses), tables, guesses)
+    groups = measured(paired(once(groups, tables, guesses), tables, guesses), tables, guesses)
     known = {name for name, _ in roles}
     left += [n for n, x in tables.items() if n not in known and n != clock and moves(x)]
     reached: dict[object, float] = {}
