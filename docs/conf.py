@@ -6,6 +6,8 @@ pages where the repository is shown, and `tests/documentation/test_generated.py`
 """
 
 import functools
+import gc
+import importlib
 import inspect
 import logging
 import os
@@ -18,13 +20,18 @@ sys.path.insert(0, str(HERE))
 os.environ["COLUMNS"] = "100"
 
 from generators import write_pages  # noqa: E402
+from generators.api import module_names  # noqa: E402
 from generators.docstrings import to_restructured_text  # noqa: E402
 from sphinx.domains.python import PythonDomain  # noqa: E402
+from sphinx.ext.autodoc._dynamic import _signatures  # noqa: E402
+from sphinx.pycode.parser import Parser  # noqa: E402
 
 # Who asks for the source of a class has Python parse its whole module again, and autodoc asks some thirty thousand
-# times. Nor does anybody read what Sphinx would say for debugging.
+# times. Nor does anybody read what Sphinx would say for debugging, or where in its file a definition ends.
 inspect.findsource = functools.cache(inspect.findsource)
 logging.getLogger("sphinx").setLevel(logging.INFO)
+Parser.parse_definition = lambda self: None
+gc.set_threshold(50_000, 20, 50)
 
 project = "SHER 3.0"
 author = "the SHER3 authors"
@@ -81,6 +88,24 @@ class ExactPythonDomain(PythonDomain):
         return super().find_obj(env, modname, classname, name, type, 0)
 
 
+def keep_defaults(function, bound_method, keep=_signatures.update_default_value) -> None:
+    """Show default values as they are written; a function without any is not parsed for them."""
+    plain = inspect.unwrap(function)
+    if not inspect.isfunction(plain) or plain.__defaults__ or plain.__kwdefaults__:
+        keep(function, bound_method)
+
+
+_signatures.update_default_value = keep_defaults
+
+
+def prepare(app) -> None:
+    """Write the pages, and import what they describe before Sphinx forks: else each of its processes would do it."""
+    write_pages(HERE / "reference")
+    for name in module_names():
+        importlib.import_module(name)
+    gc.freeze()
+
+
 def skip_bound_methods(app, what, name, thing, skip, options) -> bool | None:
     """Leave out a method that a module names for short (`add = CATALOGUE.add`): it stands on its class's page."""
     return True if what == "module" and inspect.ismethod(thing) else None
@@ -89,7 +114,7 @@ def skip_bound_methods(app, what, name, thing, skip, options) -> bool | None:
 def setup(app) -> None:
     """Write the generated pages, and let autodoc read docstrings that are plain text with Markdown's backticks."""
     app.add_domain(ExactPythonDomain, override=True)
-    app.connect("builder-inited", lambda app: write_pages(HERE / "reference"))
+    app.connect("builder-inited", prepare)
     app.connect("autodoc-skip-member", skip_bound_methods)
     # Before napoleon, which listens with priority 500 and expects reStructuredText.
     app.connect("autodoc-process-docstring", to_restructured_text, priority=100)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import functools
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -19,9 +20,19 @@ ORPHAN = ":orphan:\n\n"
 
 def pages() -> dict[str, str]:
     """Return the text of every page by its file name, the index among them."""
-    folders = {name: modules for package in _packages() for name, modules in _folders(package).items()}
+    folders = _all_folders()
     texts = {f"{name}.rst": _page(name, modules) for name, modules in folders.items()}
     return {"index.rst": INDEX + "".join(f"* :doc:`{name}`\n" for name in sorted(folders))} | texts
+
+
+def module_names() -> list[str]:
+    """Return the dotted names of all modules that the pages describe."""
+    return [module for name, modules in _all_folders().items() for module in (name, *modules)]
+
+
+@functools.cache
+def _all_folders() -> dict[str, list[str]]:
+    return {name: modules for package in _packages() for name, modules in _folders(package).items()}
 
 
 def _packages() -> list[Path]:

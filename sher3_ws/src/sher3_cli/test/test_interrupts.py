@@ -32,7 +32,7 @@ main()
 """A command that is interrupted in code made of a string."""
 
 
-@pytest.mark.parametrize(("event", "number"), [("import", 5), ("import", 300), ("exec", 150), ("exec", 600)])
+@pytest.mark.parametrize(("event", "number"), [("import", 5), ("import", 200), ("exec", 150), ("exec", 400)])
 def test_an_interrupt_while_a_command_is_imported_is_its_exit_code(event, number, tmp_path):
     (tmp_path / "interrupted.py").write_text(INTERRUPTED)
     words = [sys.executable, "-m", "interrupted", event, str(number), "up", "--help"]
