@@ -118,8 +118,8 @@ def _motor_residual(robot: Robot, echo: Array, motor: Array, effort: Array, load
     speed = np.diff(motor, axis=0) / period
     acceleration = np.diff(speed, axis=0) / period
     middle = 0.5 * (speed[:-1] + speed[1:])
-    external = np.einsum("nij,ni->nj", nominal.tip_jacobian(robot, load), contact)
-    static = nominal.gravity(robot, load) - external
+    static, on = nominal.gravity(robot, load), contact.any(axis=1)
+    static[on] -= np.einsum("nij,ni->nj", nominal.tip_jacobian(robot, load[on]), contact[on])
     residual = force - mass * acceleration - viscous * middle - static[1:-1]
     return np.asarray(_low_pass(residual, period)[:-1])
 
