@@ -86,8 +86,7 @@ def _extended(data: Standardised, trail: Sequence[Step], new: Blocks) -> Product
     normal[:, :q, :q], right[:, :q] = before[0], before[1]
     if channel not in term.channels:
         return normal, right, energy
-    # Beside a copy of itself: of one array NumPy computes half of the products, which rounds otherwise.
-    own, alone = _with_target(data, new), _pair(new, Blocks(term, channel))
+    own, alone = _with_target(data, new), _pair(new, new)
     normal[:, q:, q:] = alone[:, :-1, :-1]
     right[:, q:] = own[:, :-1] - alone[:, :-1, -1]
     energy = energy - 2.0 * own[:, -1] + alone[:, -1, -1]
@@ -126,6 +125,7 @@ def _pair(a: Blocks, b: Blocks) -> Array:
         out = np.zeros((len(a.of_runs), a.term.width + 1, b.term.width + 1))
         for r, (left, right) in enumerate(zip(a.of_runs, b.of_runs, strict=True)):
             if left is not None and right is not None:
-                out[r] = left.T @ right
+                # Beside a copy of itself: of one array NumPy computes half of the products, which rounds otherwise.
+                out[r] = left.T @ (right.copy() if right is left else right)
         kept[key] = (b.term, out)
     return kept[key][1]

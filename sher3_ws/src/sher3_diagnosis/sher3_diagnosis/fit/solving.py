@@ -24,7 +24,7 @@ def solve(normal: Array, right: Array) -> Array:
         return np.zeros(right.shape)
     scale = np.sqrt(np.diagonal(normal, axis1=-2, axis2=-1))
     alive = scale > 1e-12 * np.maximum(scale.max(axis=-1, keepdims=True), 1e-300)
-    inverse = np.divide(1.0, scale, out=np.zeros_like(scale), where=alive)
+    inverse = 1.0 / np.where(alive, scale, np.inf)
     a = normal * inverse[..., :, None] * inverse[..., None, :]
     np.einsum("...ii->...i", a)[...] += np.where(alive, RIDGE, 1.0)  # a view of the diagonals
     found: Array = np.linalg.solve(a, (right * inverse)[..., None])[..., 0] * inverse

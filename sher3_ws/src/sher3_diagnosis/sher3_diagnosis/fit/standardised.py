@@ -39,7 +39,7 @@ class Standardised:
     def flat(self, run: int, channel: Channel, values: Array) -> Array:
         """Whiten (g, d) or (g, d, p) values of a channel and flatten the samples that count -> (N,) or (N, p)."""
         residual = self.residuals[run][channel]
-        kept = residual.relieved(values[residual.ok])
+        kept = residual.relieved(values.take(residual.counting, axis=0))
         scale = self.floors[run][channel]
         kept = kept / (scale[:, None] if kept.ndim == 3 else scale)
         return kept.reshape(-1, kept.shape[2]) if kept.ndim == 3 else kept.ravel()
