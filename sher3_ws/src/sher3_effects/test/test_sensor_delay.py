@@ -1,4 +1,6 @@
-"""The least delay of an effort that is one."""
+"""The least delay of an effort that is one, and the longest lead."""
+
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -22,3 +24,11 @@ def test_a_delay_of_any_part_of_a_period_is_within_reach_of_one_that_is_tried(sh
     tried = SensorDelay().PERIODS
     low, high = SensorDelay().REST
     assert any(low < (share - n) / n < high for n in tried)
+
+
+@pytest.mark.parametrize(("period", "lead"), [(0.001, 0.02), (0.02, 0.06), (0.05, 0.15)])
+def test_an_effort_comes_no_earlier_than_a_filter_delays_the_position(period, lead):
+    """221 ms at 50 Hz, of a servo beside others, was their weight; a late effort is another matter."""
+    run = SimpleNamespace(load=None, effort=np.ones((9, 1)), period=period, UNSTATED=1.0)
+    tried = [shape["delay"] for shape in SensorDelay().shapes([SimpleNamespace(row=lambda _: 0, run=run)], "elbow")]
+    assert -1.001 * lead <= min(tried) < 0.0 and max(tried) >= -min(tried)

@@ -55,7 +55,7 @@ class SensorDelay(Page):
         late = [s * n * run.period for n in self.PERIODS for s in (1.0, -1.0) if n * run.period <= LONGEST_DELAY]
         which = [float(k) for k, x in enumerate((run.load, run.effort)) if x is not None and np.any(x[:, row])]
         least = run.UNSTATED * self.LEAST * run.period
-        early = earliest(run.period) if views[0].axis(site).effort_is_demand else LONGEST_DELAY
+        early = earliest(run.period)
         return [
             {"delay": t, "of_effort": k, "least": k * least}
             for k in which
