@@ -10,6 +10,7 @@ from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.effect import Best, Shape, Signature
 from sher3_sim.effect import EVERYWHERE, PlantEffect, parameter
 
+from sher3_effects.delay import tried
 from sher3_effects.page import NOWHERE, Page
 from sher3_effects.view import AxisView, LawView
 
@@ -35,12 +36,12 @@ class ServoDelay(CommandDelay):
     explanation = "The axis follows its reference a fixed time late."
     siblings = {"drive_lag": "the reference is smoothed as well as late"}
     PERIODS = (0.25, 0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0, 24.0)
-    """Dead times that are tried, in periods of the record."""
+    """Dead times that are tried, in periods of the record; longer ones follow, see `tried`."""
     finer = {"delay": (0.8, 0.9, 0.95, 1.05, 1.1, 1.25)}
 
     def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
         """Return dead times, s."""
-        return [{"delay": n * views[0].run.period} for n in self.PERIODS]
+        return [{"delay": t} for t in tried(self.PERIODS, views[0].run.period)]
 
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
         """Return reference minus the reference of a dead time ago; nothing is left to fit."""

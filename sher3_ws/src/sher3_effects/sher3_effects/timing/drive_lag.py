@@ -11,6 +11,7 @@ from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.effect import Best, Shape, Signature, column
 from sher3_sim.effect import EVERYWHERE, PlantEffect, parameter
 
+from sher3_effects.delay import tried
 from sher3_effects.operators import first_order, held_lag, lagged, oscillator, taken_by_limit
 from sher3_effects.page import Page
 from sher3_effects.view import AxisView, RobotView
@@ -109,7 +110,7 @@ class ServoLag(DriveLag):
     DAMPINGS = (0.4, 0.7, 0.95)
     """Of a filter of second order."""
     LAGS, LATE = (1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0), (1.0, 2.0, 3.0, 4.0, 6.0, 8.0)
-    """Time constants and dead times that are tried together, in periods of the record."""
+    """Time constants and dead times that are tried together, in periods of the record; balances are later, too."""
     LEAST_OF_SECOND = 1.5
     """Periods from which a filter of second order is tried: below it the record does not show the difference."""
     BALANCE = ("time_constant", "inertia", "rate")
@@ -138,7 +139,7 @@ class ServoLag(DriveLag):
 
         A balance stands beside other forces, as a filtered reference does not.
         """
-        late = [{"delay": n * views[0].run.period} for n in self.LATE]
+        late = [{"delay": t} for t in tried(self.LATE, views[0].run.period)]
         return [{"balance": n, **after} for n in (1.0, 2.0) for after in ({}, *late)]
 
     def plainer(self, views: Sequence[AxisView], site: str, shape: Shape) -> list[Shape]:
