@@ -15,31 +15,32 @@ from sher3_chain.floors.innovation import NOTHING, chain_floors, plain_innovatio
 
 def floors_of(records: Sequence[AxisView], found: Sequence[Residuals], repeats: bool) -> list[Floors]:
     """Return the floor per record and channel of one axis; `repeats` of one motion, or not."""
-    return chain_floors(records, found, repeats, resolution_floors, unforeseen)
+    return chain_floors(records, found, repeats, of_readings, unforeseen)
 
 
 def unforeseen(view: AxisView, residual: Residual, channel: Channel) -> Array:
     """Return the standard deviation (1,) of white noise with the innovation of a residual, in the residual's unit.
 
     A straight line, or the past motion and known inputs: whichever foresees more. Inputs also foresee a part of the
-    encoder's own noise, since differences correlate its samples; the floor keeps that part.
+    encoder's own noise, since differences correlate its samples; `of_readings` keeps that part.
     """
-    noise = resolution_floors(view, UNIFORM * view.noise)[channel]
-    return np.minimum(plain_innovation(view, residual, channel), np.maximum(foreseen(view.run, residual), noise))
+    return np.minimum(plain_innovation(view, residual, channel), foreseen(view.run, residual))
 
 
-def resolution_floors(view: AxisView, least: float = 0.0) -> Floors:
-    """Return what rounding alone makes: white noise of a count's variance through the filters of the residuals.
+def of_readings(view: AxisView) -> Floors:
+    """Return what the readings alone make: white noise of the encoder, or of its count, through every law of motion.
 
-    The count, m or rad, is taken to be no smaller than `least`.
+    An error of the place is one of speed and acceleration, and a law makes a force of them: the nominal one, and a
+    viscous friction that would carry the recorded force alone. A force without noise is met exactly by a constant, and
+    by no such law, whatever moves.
     """
     run, axis = view.run, view.described
-    count = max(axis.encoder_resolution, least) / UNIFORM
-    noise, bend = white_behind(run)
+    place, (noise, pace, bend) = view.noise, white_behind(run)
     effort = axis.effort_resolution / UNIFORM * noise
-    inertia = view.mass * count * bend
-    force = count if axis.servo else max(float(np.hypot(effort, inertia)), NOTHING)
+    force = (
+        place if axis.servo else float(np.linalg.norm([effort, view.mass * place * bend, view.thick * place * pace]))
+    )
     return {
         Channel("motor_mechanics", axis.name): np.array([max(force, NOTHING)]),
-        Channel("transmission", axis.name): np.array([np.sqrt(2.0) * count]),
+        Channel("transmission", axis.name): np.array([np.sqrt(2.0) * place]),
     }

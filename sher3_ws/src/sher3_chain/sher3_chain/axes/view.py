@@ -8,6 +8,7 @@ import numpy as np
 from sher3_diagnosis.channel import Array, Channel, Mask
 from sher3_diagnosis.discover.feature import Quantities, Quantity
 from sher3_diagnosis.filter import EDGE, settled
+from sher3_diagnosis.localise.floors import UNIFORM
 from sher3_diagnosis.localise.readings import noise_of
 from sher3_effects.operators import second_difference
 from sher3_effects.view import NominalAxis
@@ -133,6 +134,15 @@ class AxisView(ChainView):
         return needed if run.nominal is None else needed + run.to_grid(run.nominal)
 
     @cached_property
+    def thick(self) -> float:
+        """Viscous friction, N/(m/s) or N m/(rad/s): the nominal one, or what would carry the force in motion alone."""
+        run, ok, nominal = self.run, self.in_motion, self.described.viscous
+        pace = self.velocity[ok, 0]
+        if run.effort is None or not pace.any():
+            return nominal
+        return max(nominal, float(abs(pace @ run.to_grid(run.effort)[ok, 0]) / (pace @ pace)))
+
+    @cached_property
     def behind(self) -> Array:
         """Acceleration of the second encoder less that of the first, (g, 1); zero where there is one encoder."""
         run = self.run
@@ -150,8 +160,8 @@ class AxisView(ChainView):
 
     @cached_property
     def noise(self) -> float:
-        """Standard deviation of the encoder's noise, m or rad."""
-        return noise_of(self.run.motor[:, 0])
+        """Standard deviation of the encoder's noise, or of rounding to its count, m or rad."""
+        return max(noise_of(self.run.motor[:, 0]), self.described.encoder_resolution / UNIFORM)
 
     @cached_property
     def _jitter(self) -> float:

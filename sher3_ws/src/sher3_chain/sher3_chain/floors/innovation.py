@@ -68,15 +68,16 @@ def _of_clock(ticks: int, stride: int, period: float, bandwidth: float) -> float
     return float(innovation(Residual(seen, np.ones(len(seen), dtype=bool)))[0] / seen.std())
 
 
-def white_behind(run: AxisSignals) -> tuple[float, float]:
-    """Return the standard deviation of white noise behind a run's filter, and that of its second derivative, 1/s^2.
+def white_behind(run: AxisSignals) -> tuple[float, float, float]:
+    """Return the standard deviation of white noise behind a run's filter, of its speed, 1/s, and acceleration, 1/s^2.
 
-    Both are those of noise of a standard deviation of one, without the ends, where the filter spoils a difference.
+    All are those of noise of a standard deviation of one, without the ends, where the filter spoils a difference.
     """
     noise = np.random.default_rng(0).normal(size=(max(run.ticks, NOISE_SAMPLES), 1))
     end = min(int(run.edge), len(noise) // 4)
-    seen, bend = (run.filtered(x)[end : len(noise) - end].std() for x in (noise, second_difference(noise, run.period)))
-    return float(seen), float(bend)
+    kinds = (noise, np.gradient(noise, run.period, axis=0), second_difference(noise, run.period))
+    place, pace, bend = (float(run.filtered(x)[end : len(noise) - end].std()) for x in kinds)
+    return place, pace, bend
 
 
 def innovation(residual: Residual) -> Array:

@@ -14,11 +14,11 @@ from sher3_diagnosis.channel import Array, Mask
 from sher3_diagnosis.fit.fitting import solve
 from sher3_diagnosis.quantify.jackknife import standard_error
 from sher3_diagnosis.thresholds import JACKKNIFE
-from sher3_effects.operators import second_difference
 from sher3_machines.errors import MachineError
 from sher3_machines.thresholds import BLOCKS
 
 from sher3_chain.axes.view import AxisView
+from sher3_chain.floors.innovation import white_behind
 from sher3_chain.thresholds import LEAST_EXCITED, NOISE_SHARE
 
 LEFT = 1e-3
@@ -63,31 +63,44 @@ def identify_mass(views: Sequence[AxisView]) -> tuple[float, tuple[float, float]
     blocks = _blocks(x, y)
     _, columns = _best(blocks)
     used = x[:, columns]
-    noise = noise_share(views, used[:, 0])
+    noises = noise_of_columns(views)[columns]
+    noise = min(NOISE_SHARE, float(noises[0]) / float(np.mean(used[:, 0] ** 2) or np.inf))
     _, draws = _held_out(blocks, _others(blocks), _chosen([columns]), noise)
-    mass = float(solve(_relieved(used, noise), used.T @ y)[0])
-    error = float(standard_error(draws[:, 0]))
-    if not mass > LEAST_EXCITED * error:
-        wrong = mass < -LEAST_EXCITED * error
+    beta = solve(_relieved(used, noise), used.T @ y)
+    mass, error = float(beta[0]), float(standard_error(draws[:, 0]))
+    hidden = _hidden(used, noises, beta)
+    if not mass > LEAST_EXCITED * (error + hidden):
+        wrong = mass < -LEAST_EXCITED * (error + hidden)
         what = "its mass comes out below zero: the model is wrong" if wrong else "the record does not tell its mass"
         raise MachineError(
             f"axis {views[0].described.name}: {what}",
-            value=f"{mass:.3g} +- {error:.2g}",
+            value=f"{mass:.3g} +- {error + hidden:.2g}",
             limit=f"{LEAST_EXCITED:g} standard errors above 0",
             remedy="check sign and gain of the force, and weight" if wrong else "state `mass`",
         )
-    half = JACKKNIFE * error + 2.0 * NOISE_SHARE * mass  # what is taken off is known to as much again
+    half = JACKKNIFE * error + 2.0 * max(NOISE_SHARE * mass, hidden)  # what is taken off is known to as much again
     return mass, (mass - half, mass + half)
 
 
-def noise_share(views: Sequence[AxisView], acceleration: Array) -> float:
-    """Return the share of the power of an acceleration (n,) that is the encoder's noise; at most `NOISE_SHARE`."""
-    false, power = [], float(np.mean(acceleration**2))
-    for view in views:
-        run = view.run
-        white = np.random.default_rng(0).normal(size=(run.ticks, 1))
-        false.append(float(np.mean(run.to_grid(view.noise * second_difference(white, run.period)) ** 2)))
-    return min(NOISE_SHARE, float(np.mean(false)) / power) if power else 0.0
+def noise_of_columns(views: Sequence[AxisView]) -> Array:
+    """Return the mean square (7,) of the encoder's noise in every column: it is in acceleration and velocity."""
+    _, pace, bend = np.transpose([view.noise * np.array(white_behind(view.run)) for view in views])
+    return np.array([np.mean(bend**2), np.mean(pace**2), *np.zeros(COLUMNS - 2)])
+
+
+def _hidden(x: Array, noise: Array, beta: Array) -> float:
+    """Return by how much noise in the columns (n, p) may make the first of their coefficients (p,) wrong.
+
+    Least squares on noisy columns are off by (X'X)^-1 n diag(noise) beta to first order (Fuller 1987, Measurement Error
+    Models, section 1.1); their parts are taken to add up.
+
+    Args:
+        x: columns of the force balance.
+        noise: mean square in each of them, (p,).
+        beta: their coefficients.
+    """
+    inverse = np.linalg.pinv(x.T @ x, hermitian=True)[0]
+    return float(np.sum(np.abs(inverse * len(x) * noise * beta)))
 
 
 def _relieved(x: Array, noise: float) -> Array:
