@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 from sher3_diagnosis.channel import Array
 from sher3_machines.errors import MachineError
-from sher3_machines.intake.fields import VELOCITIES
 from sher3_machines.thresholds import FURTHEST
 
 from sher3_chain.joint.description import Axis
@@ -14,8 +13,6 @@ SLIPS = {"linear": (1e3, "mm recorded as m"), "rotary": (180.0 / np.pi, "deg rec
 """Motion -> factor of its usual wrong unit, and that slip in words."""
 SLIP_TOLERANCE = 1.25
 """Factor within which a ratio of two signals counts as that of a wrong unit."""
-TURNS = ("count", "rev", *VELOCITIES)
-"""Units of a position that are not checked for a slip to degrees: a motor may well make a hundred turns."""
 BEYOND = 0.1
 """Share of the range by which a position may leave it: stated ranges are rounded."""
 COUNTS_MOVED = 100.0
@@ -55,8 +52,8 @@ def check_units(axis: Axis, signals: dict[str, Array], run: str, over: float = 0
 
 
 def _check_range(axis: Axis, position: Array, run: str) -> None:
-    if axis.range is None and axis.motion == "rotary" and axis.signals.position.unit in TURNS:
-        return
+    if axis.range is None and axis.motion == "rotary" and axis.signals.position.unit != "rad":
+        return  # of degrees or counts nothing was taken for radians, and a motor may well make a hundred turns
     lowest, highest = axis.range or (-FURTHEST[axis.motion], FURTHEST[axis.motion])
     worst = float(position[np.argmax(np.abs(position))])
     span = max(abs(lowest), abs(highest))

@@ -112,10 +112,11 @@ def test_a_reference_in_another_unit_is_named():
         check_units(axis_of(range=(0.0, 1.0)), found, "run")
 
 
-def test_a_motor_that_counts_may_make_many_turns():
-    """117 rad in counts are no degrees; 117 that were stated as rad may be."""
+@pytest.mark.parametrize("stated", [{"unit": "count", "factor": 1e-3}, {"unit": "deg"}, {"unit": "rev"}])
+def test_a_motor_that_counts_may_make_many_turns(stated):
+    """117 rad in counts or degrees are no slip; 117 that were stated as rad may be."""
     found = {"position": np.linspace(0.0, 117.0, 50)}
-    signals = {"position": {"column": "q", "unit": "count", "factor": 1e-3}, "effort": {"column": "i", "unit": "A"}}
+    signals = {"position": {"column": "q", **stated}, "effort": {"column": "i", "unit": "A"}}
     check_units(axis_of(motion="rotary", signals=signals), found, "run")
     signals["position"] = {"column": "q", "unit": "rad"}
     with pytest.raises(MachineError, match="likely deg recorded as rad; value 117"):
