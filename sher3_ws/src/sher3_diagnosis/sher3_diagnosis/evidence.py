@@ -134,10 +134,6 @@ class Evidence:
         """Return the unit of a parameter at a site where forces were not recorded as such; default the SI unit."""
         return unit
 
-    def largest_force(self, site: str) -> float:
-        """Return the largest force that acted at a site, recorded and needed together, N or N m; default infinite."""
-        return math.inf
-
     def component(self, channel: Channel, component: int) -> str | None:
         """Return the name of a component: `x` to `rz` of a pose, `fx` to `tz` of a wrench; None for a single one."""
         residual = next(r[channel] for r in self.data.residuals if channel in r)

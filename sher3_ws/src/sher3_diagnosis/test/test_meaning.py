@@ -1,12 +1,11 @@
 """Causes that say nothing, by hand: of no size, wider than the travel, of no use to what was left out."""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from sher3_diagnosis.attribute.candidates import Candidates
 from sher3_diagnosis.attribute.rivals import with_rivals
-from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.finding import Finding
 from sher3_diagnosis.fit.fitting import fit, make_term
 from sher3_diagnosis.judge.items import items_of
@@ -31,16 +30,6 @@ class Law(Column):
     def parameters(self, shape, coefficients):
         a, b = map(float, coefficients)
         return {"size": a, "inverse": 1.0 / a, "place": b / a, "shape": 3.0}
-
-
-@dataclass(frozen=True, kw_only=True)
-class Pushed(Evidence):
-    """Of an axis whose largest force is known, N."""
-
-    most: float
-
-    def largest_force(self, site):
-        return self.most
 
 
 class Term:
@@ -193,14 +182,3 @@ def test_a_law_of_no_size_gives_its_place_to_a_rival_that_explains_as_much():
     found = with_rivals(candidates, fit(evidence.data, [make_term(evidence.data, other, "axis", {})]))
     kept = without_empty(candidates, found, [cause(size=(-1.0, 2.0))])
     assert [t.effect.id for t in kept.fit.terms] == ["direction"]
-
-
-@pytest.mark.parametrize(("most", "end", "empty"), [(5.0, 4.9, False), (5.0, 5.1, True), (np.inf, 1e6, False)])
-def test_a_force_is_no_larger_than_the_largest_that_acted_there(most, end, empty):
-    """2 N are told, up to an end; whatever the family: a cogging of 137 N m was, where no effort reached 5."""
-    evidence = Pushed(**vars(evidence_of(case(2.0))), most=most)
-    found = fit(evidence.data, [make_term(evidence.data, DIRECTION, "axis", {})])
-    told = cause(size=(1.0, 3.0)).model_copy(
-        update={"parameters": {"size": Parameter(value=2.0, low=1.0, high=end, unit="N")}}
-    )
-    assert says_nothing(evidence, found, 0, told) == empty

@@ -36,10 +36,6 @@ class ChainEvidence(Evidence):
         """Return the record that a block belongs to."""
         return self.records.index(self.data.views[block])
 
-    def largest_force(self, site: str) -> float:
-        """Return the largest force on a joint, recorded and needed together, N or N m; infinite where none is known."""
-        return max(view.largest_force(site) for view in self.records)
-
     def foreseen(self, views: Sequence[Any], residuals: Sequence[Residuals]) -> Standardised:
         """Return runs that were never made, in blocks, with the floor of every channel: its median over the records.
 

@@ -121,18 +121,6 @@ class ChainView(GridView, ABC):
         row = self.row(actuator)
         return Motion(self.position[:, row], self.velocity[:, row], float(self.tops[row]), self.joints[row].lead)
 
-    def largest_force(self, site: str) -> float:
-        """Return the largest force on a joint, recorded and needed together, N or N m; infinite where none is known."""
-        if site not in self._rows or self.run.effort is None:
-            return np.inf
-        given, needed = (x[:, self.row(site)] for x in (self.run.to_grid(self.run.effort), self.inertial))
-        return float(np.max(np.abs(given) + np.abs(needed)))
-
-    @cached_property
-    @abstractmethod
-    def inertial(self) -> Array:
-        """Nominal force that the motion needs, (g, n), N or N m."""
-
     def travelled(self, row: int) -> dict[str, Array]:
         """Return quantity, of `sher3_diagnosis.effect.INPUTS`, -> (g, k) columns that any joint feels of its motion.
 

@@ -26,8 +26,6 @@ LOST = "lost_motion"
 """Family of which nothing is wider than the travel, and no gap negative unless its page says so."""
 PLACES = ("m", "rad")
 """Units of a place: no size in them is larger than the travel, such as the sag of a servo."""
-FORCES = ("N", "N*m")
-"""Units of a force: no cause adds more to a balance than the largest force that acted there, such as a cogging."""
 HALF = 0.5
 """Factor of all coefficients that shows which parameters they scale."""
 SPAN = 10.0
@@ -173,7 +171,7 @@ def _scaled(term: Term, coefficients: Array, factor: float) -> dict[str, float]:
 
 
 def impossible(evidence: Evidence, term: Term, coefficients: Array, cause: Cause) -> bool:
-    """Return whether an end of an interval lies where no value can: beyond its page, the travel or the forces.
+    """Return whether an end of an interval lies where no value can: beyond what its page says, or beyond the travel.
 
     Args:
         evidence: that was fitted.
@@ -183,13 +181,10 @@ def impossible(evidence: Evidence, term: Term, coefficients: Array, cause: Cause
     """
     limits = dict(term.effect.limits(term.shape))
     travel, sizes = _travel(evidence, term.site), linear_in(term, coefficients)
-    times = _times_larger(evidence, term, coefficients)
     for name, p in cause.parameters.items():
         wide = term.effect.family == LOST and term.effect.units.get(name) == "m"
-        place = wide or evidence.own_unit(p.unit, term.site) in PLACES
-        most = travel if place else times * abs(p.value)
-        if wide or (name in sizes and (place or p.unit in FORCES)):
-            limits[name] = (limits.get(name, (0.0 if wide else -most, most))[0], most)
+        if wide or (name in sizes and evidence.own_unit(p.unit, term.site) in PLACES):
+            limits[name] = (limits.get(name, (0.0 if wide else -travel, travel))[0], travel)
     return any(_outside(cause.parameters[n], *limit) for n, limit in limits.items() if n in cause.parameters)
 
 
@@ -205,20 +200,6 @@ def _travel(evidence: Evidence, site: str) -> float:
             beside = [x.values for c, x in residuals.items() if c.actuator == site and evidence.units[c] in PLACES]
             moved.append(float(np.ptp(motion.position)) + max((float(np.ptp(x)) for x in beside), default=0.0))
     return max(moved, default=math.inf)
-
-
-def _times_larger(evidence: Evidence, term: Term, coefficients: Array) -> float:
-    """Return how many times as large a cause could be before it adds more than the largest force; infinite without one.
-
-    It is asked of what is added to the record: a weight at an arm may be larger where the arm hardly swings.
-    """
-    added = [
-        float(np.abs(term.adds(r, c, coefficients) * evidence.floors[r][c][0]).max(initial=0.0))
-        for r, columns in enumerate(term.columns)
-        for c in columns
-        if c.actuator == term.site and evidence.units[c] not in PLACES
-    ]
-    return evidence.largest_force(term.site) / max(added) if any(added) else math.inf
 
 
 def _outside(p: Parameter, least: float, most: float) -> bool:

@@ -28,10 +28,6 @@ class LawView(AxisView):
         self.stated = stated_law(run, axis, sampling)
         self.sampling = sampling
 
-    def largest_force(self, site: str) -> float:
-        """Return that of a command: any."""
-        return np.inf
-
 
 def residual_of(view: LawView) -> Residual:
     """Return command less law, (g, 1) in the command's unit."""
