@@ -1,4 +1,4 @@
-"""The `sher3` command as a tree of commands, found through its entry point, wherever its package is.
+"""The `sher3` command as a tree of commands.
 
 The commands are Click's, or those of the copy of Click that newer releases of Typer carry: hence `Any`.
 """
@@ -7,18 +7,16 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
-from importlib import import_module
-from importlib.metadata import entry_points
 from typing import Any
 
 import typer
+from sher3_cli.root import make_app
 from typer.testing import CliRunner
 
 
 def application() -> typer.Typer:
     """Return the whole command line, every command imported."""
-    (entry,) = entry_points(group="console_scripts", name="sher3")
-    return import_module(entry.module).make_app("*")
+    return make_app("*")
 
 
 def commands() -> Iterator[tuple[str, Any]]:
