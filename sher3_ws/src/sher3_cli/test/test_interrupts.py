@@ -7,6 +7,7 @@ import pytest
 
 INTERRUPTED = """
 import os, signal, sys
+signal.signal(signal.SIGINT, signal.default_int_handler)  # tests in the background ignore it
 event, left = sys.argv.pop(1), int(sys.argv.pop(1))
 
 def interrupt(name, _):
@@ -23,6 +24,8 @@ main()
 """Interrupts itself at one of the events that Python tells of: an import, or code that is run."""
 
 CUT = """
+import signal
+signal.signal(signal.SIGINT, signal.default_int_handler)
 import sher3_cli.root
 from sher3_cli.__main__ import main
 text = "import os, signal; os.kill(os.getpid(), signal.SIGINT); [None for _ in range(9)]"
