@@ -5,6 +5,7 @@ import signal
 import time
 
 import pytest
+from sher3_safety.search import forked as forks
 from sher3_safety.search.forked import ForkEnded, forked
 
 
@@ -30,11 +31,12 @@ def test_a_fork_that_fails_is_an_error_and_prints_what_it_raised(capfd):
     assert "ZeroDivisionError" in capfd.readouterr().err
 
 
-def test_a_fork_that_waits_for_ever_ends_whatever_its_parent_does_with_alarms():
+def test_a_fork_that_waits_for_ever_ends_whatever_its_parent_does_with_alarms(monkeypatch):
     """A lock of the middleware, held by a thread that is not in the fork, kept one for a whole test run."""
+    monkeypatch.setattr(forks, "LONGEST", 1)
     before = signal.signal(signal.SIGALRM, lambda *_: None)
     try:
         with pytest.raises(ForkEnded, match="without an answer"):
-            forked(lambda: time.sleep(30), longest=1)
+            forked(lambda: time.sleep(30))
     finally:
         signal.signal(signal.SIGALRM, before)

@@ -104,24 +104,11 @@ def test_a_search_goes_on_from_what_is_kept_as_if_it_had_not_ended(tmp_path, mon
         return [Found(draw, 1e-6 * sum(f.onset for f in draw.faults), "A", seed) for draw in draws]
 
     monkeypatch.setattr("sher3_safety.search.climb.try_all", formula)
-    monkeypatch.setattr("sher3_safety.search.climb.forked", lambda call, _: call())
     whole = search(100, seed=5)
     first = search(50, seed=5, kept=tmp_path)
     assert search(100, seed=5, kept=tmp_path) == whole and whole.found[:50] == first.found
     assert tried == [ROUND] * 8 and search(100, seed=5, kept=tmp_path) == whole and len(tried) == 8
     assert search(25, seed=6, kept=tmp_path).found != whole.found[:25]
-
-
-def test_the_robots_of_a_search_are_gone_after_each_round(monkeypatch):
-    """A search of 11 000 draws came to 4 GB, and to half its draws a second."""
-    left = []
-
-    def leaves(draws, robot, seed):
-        left.append(seed)
-        return [Found(draw, 0.0, "A", seed) for draw in draws]
-
-    monkeypatch.setattr("sher3_safety.search.climb.try_all", leaves)
-    assert len(search(2 * ROUND, seed=5).found) == 2 * ROUND and left == []
 
 
 def test_an_axis_that_goes_while_both_its_encoders_drift_is_not_drawn():

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 from random import Random
 from typing import Any
@@ -15,14 +14,11 @@ from sher3_faults.budget import RUNAWAY
 
 from sher3_safety.kept import Kept
 from sher3_safety.search.draw import Draw, drawn, near
-from sher3_safety.search.forked import forked
 from sher3_safety.search.trial import Found, try_all
 from sher3_safety.search.words import read
 
 ROUND, PARENTS, CLIMBS = 25, 10, 0.6
 """Draws of a round, how many of the worst have children, and the share of children after the first round."""
-PATIENCE = 1800
-"""Seconds after which a round ends; 25 draws take five of them on an idle core."""
 EXACT = 17
 """Digits with which a number is written and read as the same one."""
 
@@ -94,17 +90,13 @@ def search(
         number = len(result.found) // ROUND
         regime, count = regimes[number % len(regimes)], min(ROUND, trials - len(result.found))
         draws = _next(Random(f"{seed} {number}"), regime, count, result)
-        tried = forked(partial(_tried, draws, robot, seed + number), PATIENCE)  # its robot ends with it: memory stays
+        tried = [_entry(found) for found in try_all(draws, robot, seed + number)]
         store.add(tried)
         result.found += [_found(entry) for entry in tried]  # as they will be read, so that a search goes on as it would
         worst = result.worst(1)[0]
         sizes = f"{worst.travel * 1e6:.1f} um of {worst.draw.budget * 1e6:g}"
         say(f"{len(result.found)} draws, worst {sizes}, {worst.draw.state.name}: {worst.draw.in_words()}")
     return result
-
-
-def _tried(draws: Sequence[Draw], robot: Robot, seed: int) -> list[dict[str, Any]]:
-    return [_entry(found) for found in try_all(draws, robot, seed)]
 
 
 def _entry(found: Found) -> dict[str, Any]:

@@ -19,12 +19,8 @@ class ForkEnded(Sher3Error):
     """A fork that ended without an answer; what it raised stands on the standard error."""
 
 
-def forked(call: Callable[[], Any], longest: int = LONGEST) -> Any:
+def forked(call: Callable[[], Any]) -> Any:
     """Return what `call` returns in a fork of this process, of whose threads only this one goes on there.
-
-    Args:
-        call: its value is sent back.
-        longest: seconds after which the fork ends.
 
     Raises:
         ForkEnded: it raised an exception, or its process was ended.
@@ -33,7 +29,7 @@ def forked(call: Callable[[], Any], longest: int = LONGEST) -> Any:
     child = os.fork()
     if not child:
         signal.signal(signal.SIGALRM, signal.SIG_DFL)
-        signal.alarm(longest)
+        signal.alarm(LONGEST)
         try:
             writes.send(call())
         except Exception:
