@@ -8,7 +8,6 @@ import numpy as np
 from sher3_diagnosis.channel import Array, Channel, Mask
 from sher3_diagnosis.discover.feature import Quantities, Quantity
 from sher3_diagnosis.filter import EDGE, settled
-from sher3_diagnosis.localise.floors import UNIFORM
 from sher3_diagnosis.localise.readings import noise_of
 from sher3_effects.operators import second_difference
 from sher3_effects.view import NominalAxis
@@ -161,7 +160,7 @@ class AxisView(ChainView):
     @cached_property
     def noise(self) -> float:
         """Standard deviation of the encoder's noise, or of rounding to its count, m or rad."""
-        return max(noise_of(self.run.motor[:, 0]), self.described.encoder_resolution / UNIFORM)
+        return noise_of(self.run.motor[:, 0], self.described.encoder_resolution)
 
     @cached_property
     def _jitter(self) -> float:

@@ -36,8 +36,10 @@ def noise_in(place: str, reading: str, unit: str, records: Sequence[Array], reso
     return Noise(actuator=place, reading=reading, deviation=deviation, resolution=resolution or None, unit=unit)
 
 
-def noise_of(readings: Array) -> float:
+def noise_of(readings: Array, resolution: float = 0.0) -> float:
     """Return the standard deviation of white noise in readings (n,): of two figures that hold too much the smaller.
+
+    It is no less than that of rounding to their `resolution`.
 
     The noise of a fifth difference has the sum of squares of the binomial coefficients in power; in a slow record it
     holds motion too, which the highest frequencies do not.
@@ -45,7 +47,7 @@ def noise_of(readings: Array) -> float:
     power = float(np.sum(binom(ORDER, np.arange(ORDER + 1)) ** 2))
     bend = np.diff(readings, ORDER)
     size = GAUSSIAN * float(np.median(np.abs(bend))) / np.sqrt(power)
-    return min(size, noise_at_the_top(readings))
+    return max(min(size, noise_at_the_top(readings)), resolution / UNIFORM)
 
 
 def noise_at_the_top(readings: Array) -> float:

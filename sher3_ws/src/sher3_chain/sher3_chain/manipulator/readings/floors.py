@@ -40,7 +40,7 @@ def resolution_floors(view: MotionView) -> Floors:
 def coarseness(view: MotionView) -> Array:
     """Return the force that the noise of all encoders makes of each joint's balance, rms over the motion, (k,)."""
     run = view.links
-    noise = [max(noise_of(run.motor[:, j]), joint.encoder_resolution / UNIFORM) for j, joint in enumerate(view.joints)]
+    noise = [noise_of(run.motor[:, j], joint.encoder_resolution) for j, joint in enumerate(view.joints)]
     *_, bend = white_behind(run)
     rows = np.linspace(0, len(view.position) - 1, min(POSTURES, len(view.position))).astype(int)
     squares = (view.inertia_matrix(rows) * np.array(noise)) ** 2
