@@ -8,7 +8,18 @@ import numpy as np
 import pytest
 from sher3_description import load_robot
 from sher3_safety.runs.healthy import KEPT, run_healthy
-from sher3_safety.runs.sessions import ACROSS, SESSION, STRONGEST, TORQUE, WEAKEST, excitations, surgeon
+from sher3_safety.runs.sessions import (
+    ACROSS,
+    REST,
+    SESSION,
+    STRONGEST,
+    TARE,
+    TORQUE,
+    WEAKEST,
+    excitations,
+    surgeon,
+    with_tool,
+)
 
 ROBOT = load_robot()
 
@@ -29,6 +40,23 @@ def test_a_surgeon_takes_back_every_push_and_leaves_in_time():
     pushes = [step for step in script.steps if step.name in ("push", "back")]
     assert np.allclose(sum(np.array(step.wrench) * step.duration for step in pushes), 0.0)
     assert script.duration == pytest.approx(SESSION, abs=1.0)
+
+
+def test_a_tool_is_changed_without_power_and_tared_before_the_robot_is_enabled_again():
+    steps = surgeon(7).steps
+    tares = [index for index, step in enumerate(steps) if step.name == TARE]
+    assert len(tares) == 2
+    for index in tares:
+        let_go, disable, change, tare, enable = steps[index - 3 : index + 2]
+        assert not any(let_go.wrench) and disable.command == "disable" and any(change.wrench)
+        assert not any(tare.wrench) and tare.duration == REST and enable.command == "enable"
+        assert all(step.pedal == 0.0 for step in steps[index - 3 : index + 2])
+
+
+def test_tools_differ_and_the_robot_knows_them():
+    tools = {with_tool(ROBOT, seed).force_sensor.tool_mass for seed in range(20)}
+    assert len(tools) == 20 and min(tools) < 0.5 * max(tools)
+    assert with_tool(ROBOT, 3) == with_tool(ROBOT, 3)
 
 
 def test_excitations_follow_each_other_without_a_jump():

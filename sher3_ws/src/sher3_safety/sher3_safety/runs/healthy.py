@@ -1,9 +1,11 @@
 """How often a robot stops of which nothing is broken: healthy running in stepped time.
 
-The force sensor is tared first. Of four sessions three have a surgeon drawn from a seed (reach, hold, dither, turn,
-release, press again, tremble at up to 12 Hz, 0.05 to 6 N) in the regime `free`, and one the standard excitations on the
-bench. The mocks are strict, the plant has run-to-run scatter, its temperature goes up and down, and force sensor and
-structure drift with it. Whatever stops the robot without anybody asking for it is a false trip.
+The tool is drawn, and the force sensor is tared first. Of four sessions three have a surgeon drawn from a seed (reach,
+hold, dither, turn, release, press again, tremble at up to 12 Hz, 0.05 to 6 N), two in the regime `free` and one in
+`near_tissue`; twice in a session the surgeon disables the robot, changes the tool, tares and enables again. The
+fourth session has the standard excitations on the bench. The mocks are strict, the plant has run-to-run scatter, its
+temperature goes up and down, and force sensor and structure drift with it. Whatever stops the robot without anybody
+asking for it is a false trip, and so is a tare or an `enable` that is refused.
 """
 
 from __future__ import annotations
@@ -22,10 +24,11 @@ from sher3_bags.reading import read_run
 from sher3_bags.recording.live import recorded
 from sher3_bags.run import Run, RunMetadata
 from sher3_bringup.stepped_robot import SteppedRobot
+from sher3_bringup.surgeon.script import Script
 from sher3_bringup.surgeon.teleop_node import script_node
-from sher3_common.operating_state import OperatingState
+from sher3_common.operating_state import OperatingState, StateCommand
 from sher3_control.settings import ControlSettings
-from sher3_description import Robot, load_robot
+from sher3_description import load_robot
 from sher3_drivers.settings import default_settings
 from sher3_effects import plants
 from sher3_runtime import Graph
@@ -36,13 +39,15 @@ from sher3_safety.measurement.recording import INTENDED
 from sher3_safety.measurement.report import false_trips
 from sher3_safety.runs.excitation_node import ExcitationNode
 from sher3_safety.runs.operator_node import tare
-from sher3_safety.runs.sessions import SESSION, excitations, surgeon
+from sher3_safety.runs.sessions import REST, SESSION, TARE, excitations, surgeon, with_tool
 
 RECORDED = ("supervisor/status", "admittance/status", "motion/status", "operating_state", "mock/pedal", "measured_cp")
 KEPT = "healthy.jsonl"
 """File of the sessions that are kept, a line of JSON each."""
-EVERY = 4
-"""One session in four has excitations instead of a surgeon."""
+REGIMES = ("bench", "near_tissue", "free", "free")
+"""Regimes of the sessions in turn; on the bench there are excitations instead of a surgeon."""
+SESSIONS_A_PROCESS = 20
+"""Sessions after which a process ends: each robot that was built leaves 3 MB behind."""
 WARM, SWING, WARMING = 23.0, 5.0, 240.0
 """Mean temperature of the structure, its swing, degC, and the period of that, s."""
 STRETCH = 250
@@ -66,7 +71,7 @@ def run_healthy(
     store = Kept(kept, KEPT)
     begin, found = time.monotonic(), {entry["seed"]: entry["trips"] for entry in store.before()}
     left = [number for number in seeds if number not in found]
-    with ProcessPoolExecutor(jobs, mp_context=get_context("spawn")) as pool:
+    with ProcessPoolExecutor(jobs, get_context("spawn"), max_tasks_per_child=SESSIONS_A_PROCESS) as pool:
         for number, trips in zip(left, pool.map(run_session, [folder] * len(left), left), strict=True):
             found[number] = trips
             store.add([{"seed": number, "trips": trips}])
@@ -78,9 +83,9 @@ def run_healthy(
 
 
 def run_session(folder: Path, seed: int) -> list[str]:
-    """Run one session and return its trips, read from its bag."""
-    robot = load_robot()
-    regime = "free" if seed % EVERY else "bench"
+    """Run one session and return its trips, most of them read from its bag."""
+    robot = with_tool(load_robot(), seed)
+    regime = REGIMES[seed % len(REGIMES)]
     control = ControlSettings.from_robot(robot, {"motion": {"regime": regime}})
     with Graph(period=robot.control_period, middleware=False) as graph:
         rig = SteppedRobot(
@@ -95,14 +100,31 @@ def run_session(folder: Path, seed: int) -> list[str]:
         rig.plant.plant.temperature = temperature(seed, 0.0)
         graph.step(STRETCH)
         tare(graph)
-        _add_user(graph, robot, seed)
+        script = None if regime == "bench" else surgeon(seed)
+        if script is None:
+            graph.add(ExcitationNode, *excitations(robot, seed))
+        else:
+            graph.add(script_node, script)
         metadata = RunMetadata(excitation="healthy", origin="plant", seed=seed)
         name = f"healthy-{seed}"
         with recorded(graph, name, topics=RECORDED, robot=robot, root=folder, metadata=metadata):
-            for start in range(0, round(SESSION / robot.control_period), STRETCH):
-                rig.plant.plant.temperature = temperature(seed, start * robot.control_period)
-                graph.step(STRETCH)
-    return trips_of(read_run(folder / name, check=False))
+            refused = _lasts(graph, rig, seed, script)
+    enables = 1 if script is None else sum(step.command == StateCommand.ENABLE for step in script.steps)
+    return refused + trips_of(read_run(folder / name, check=False), enables)
+
+
+def _lasts(graph: Graph, rig: SteppedRobot, seed: int, script: Script | None) -> list[str]:
+    """Let a session go by, with its temperatures and a tare in each step for one; return the tares refused."""
+    period, refused, tared = rig.robot.control_period, [], -1
+    for start in range(0, round(SESSION / period), STRETCH):
+        now = start * period
+        rig.plant.plant.temperature = temperature(seed, now)
+        graph.step(STRETCH)
+        index, since = script.step_at(now + STRETCH * period) if script else (-1, 0.0)
+        if script and script.steps[index].name == TARE and index != tared and since > 0.5 * REST:
+            tared, answer = index, tare(graph)
+            refused += [] if answer.success else [f"tare refused: {answer.message}"]
+    return refused
 
 
 def temperature(seed: int, time: float) -> float:
@@ -116,22 +138,24 @@ def _climate() -> list[Any]:
     return [effects["force_drift"](actuator="force_sensor"), effects["thermal_expansion"](actuator="tip")]
 
 
-def _add_user(graph: Graph, robot: Robot, seed: int) -> None:
-    if seed % EVERY:
-        graph.add(script_node, surgeon(seed))
-    else:
-        graph.add(ExcitationNode, *excitations(robot, seed))
+def trips_of(run: Run, enables: int = 1) -> list[str]:
+    """Return what stopped the robot while it was enabled and nobody asked for it, and how often it was not enabled.
 
-
-def trips_of(run: Run) -> list[str]:
-    """Return what stopped the robot while it was enabled and nobody asked for it."""
+    Args:
+        run: with the topics `RECORDED`.
+        enables: how often it was asked to be.
+    """
     states = [(int(s), json.loads(text)) for s, text in zip(*_text(run, "supervisor/status"), strict=True)]
     trips = [str(data["reason"]) for (_, before), (_, data) in pairwise(states) if _fell(before, data)]
-    enabled = next((stamp for stamp, data in states if data["state"] == OperatingState.ENABLED), None)
+    enabled = [
+        stamp
+        for (_, before), (stamp, data) in pairwise(states)
+        if before["state"] != data["state"] == OperatingState.ENABLED
+    ]
     for topic in ("admittance/status", "motion/status"):
         reasons = [(int(s), json.loads(text)["reason"]) for s, text in zip(*_text(run, topic), strict=True)]
-        trips += [reason for stamp, reason in reasons if enabled and stamp > enabled and reason not in INTENDED]
-    return trips if enabled else ["never enabled", *trips]
+        trips += [reason for stamp, reason in reasons if enabled and stamp > enabled[0] and reason not in INTENDED]
+    return ["not enabled"] * (enables - len(enabled)) + trips
 
 
 def _fell(before: dict[str, Any], after: dict[str, Any]) -> bool:
