@@ -107,8 +107,10 @@ PULSES = vocabulary("pwm pulse pulses pulsewidth width servo")
 """Words beside which a unit of time is that of the pulses that a hobby servo is told: `servo_us`."""
 WEIGHED = vocabulary("weight weights mass masses load force gewicht gewichte masse kraft last")
 """Words beside which a `g` at the end is a gram."""
-PREFIXES = re.compile(r"(soll|ist)(?=\w{3})|[lr](?=\w{4})")
-"""What is joined to a quantity: who asks or measures in German, `Sollposition`, or the side, `Rspeed`."""
+SIDE = re.compile(r"[lr](?=\w{4})")
+"""The side, joined to a quantity: `Rspeed`."""
+SHORTEST = 3
+"""Letters of a word that is joined to another one: `Sollposition`, `Motorspannung`, `jointangle`."""
 ASKED_SPEED = "asked speed"
 """Signal of a speed that is asked for: the reference of an axis of which speeds alone were recorded."""
 
@@ -204,10 +206,13 @@ def words_of(text: str) -> list[str]:
 
 
 def _joined(word: str) -> list[str]:
-    """Return who asks and what is asked of a joined word; any other word by itself."""
-    match = PREFIXES.match(word)
-    rest = word[match.end() :] if match else ""
-    return [word[: match.end()], rest] if match and rest in WORDS | PLAIN else [word]
+    """Return the words of two that are joined, what is asked or moves and its quantity; any other word by itself."""
+    known = WORDS | PLAIN
+    if word in known | TELLING:
+        return [word]
+    cuts = [*range(SHORTEST, len(word) - SHORTEST + 1)]
+    cut = next((i for i in cuts if {word[:i], word[i:]} <= known), 1 if SIDE.match(word) and word[1:] in known else 0)
+    return [word[:cut], word[cut:]] if cut else [word]
 
 
 def bare_and_unit(name: str) -> tuple[str, str | None]:

@@ -38,7 +38,7 @@ WIDEST = 12
 DEMANDED = {"command", "commanded", "cmd", "action"}
 """Words for what a drive is told, whether a place or a force."""
 ASKED_FOR = ("reference", ASKED_SPEED)
-"""Signals that may stay as they are all along."""
+"""Signals that may stay as they are all along, and then say that a place is held."""
 LAST_NUMBER = re.compile(r"(?P<stem>.*?)(?P<number>\d+)")
 """Name of an axis that ends in a number."""
 ROUNDED = 1e-5
@@ -114,10 +114,11 @@ def _living(
 ) -> dict[Place, tuple[str, str]]:
     """Return the signals without what was not connected: a reading that never changes, beside places that do.
 
-    What an axis is asked for may stay; a column without a number is none.
+    What an axis is asked for may stay, where nothing else drives it; a column without a number is none.
     """
-    stays = (*ASKED_FOR, "position") if held else ASKED_FOR
     found = {p: (signal, values_of(p, tables)) for p, (signal, _) in placed.items()}
+    driven = any(signal in ("command", "effort") and moves(x) for signal, x in found.values())
+    stays = (*(() if driven else ASKED_FOR), *(("position",) if held else ()))
     dead = [p for p, (signal, x) in found.items() if not (moves(x) or (signal in stays and len(x)))]
     alive = {p: what for p, what in placed.items() if p not in dead}
     if not any(signal in ("position", "load", "velocity") for signal, _ in alive.values()):

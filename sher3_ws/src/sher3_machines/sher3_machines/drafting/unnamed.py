@@ -30,6 +30,18 @@ LEVELS = 3
 """Rows of a table of readings at least."""
 POSITION, VELOCITY, ACCELERATION, EFFORT = "position", "velocity", "acceleration", "effort"
 """Names of the blocks of a table of a robot."""
+REFERENCE = "reference"
+LATEST = 20
+"""Part of a record by which a place is late after its reference at most."""
+ROWS = 5000
+"""Rows of a record that tell so, of a longer one every second or third row: each lateness takes a look at all."""
+AS_FAR = 1.25
+"""Travel of one over that of the other from which a place is not told another one: a voltage, of a speed."""
+CROSSINGS = 3
+"""Times that a body which is let go goes through its place of rest at least: a cooling oven does not."""
+CLEAR, DYING = 0.2, 0.5
+"""Share of the largest swing that counts as a side, and of the first swing from which the last one is at rest."""
+TINY = 1e-300
 
 Place = tuple[str, int | None]
 """A column, and the entry of it where each sample is a list."""
@@ -72,20 +84,52 @@ def _in_unit(name: str, column: str) -> str:
 def named_by_motion(tables: Tables, rate: float | None, guesses: list[str]) -> dict[Place, str]:
     """Return names for columns that have none: the time grows evenly, and a position is the integral of its speed.
 
-    Empty where there is no time, or where no two columns without a name are place and speed.
+    Where no column is the speed of another, a position is what follows a reference later, or what swings to rest alone.
+    Empty where there is no time, or where the motion tells nothing.
     """
     clock, t, columns = _timed(tables, rate)
     moving = {p: x for p, x in columns.items() if np.isfinite(x).all() and float(np.ptp(x)) > 0.0}
     pairs = [(x, v) for x, v in permutations(moving, 2) if _is_speed(t, moving[x], moving[v])]
     speeds = {v for _, v in pairs}
     found = [(x, v) for x, v in pairs if x not in speeds]
-    if not found:
+    followers = [] if found else [(x, r) for x, r in permutations(moving, 2) if _follows(moving[x], moving[r])]
+    if found or followers:
+        (x, other), role = (found or followers)[0], VELOCITY if found else REFERENCE
+        why = "its speed" if found else "what it follows"
+        guesses.append(f"{_said(x)} is a position, because {_said(other)} is {why}; nobody named them")
+        named = {x: POSITION, other: role}
+    elif len(moving) == 1 and _swings_to_rest(*moving.values()):
+        (x,) = moving
+        guesses.append(f"{_said(x)} is a position, because it swings to rest and nothing else moves; nobody named it")
+        named = {x: POSITION}
+    else:
         return {}
-    x, v = found[0]
-    guesses.append(f"{_said(x)} is a position, because {_said(v)} is its speed; nobody named them")
-    rest = [_said(p) for p in moving if p not in (x, v)]
+    rest = [_said(p) for p in moving if p not in named]
     guesses.extend([f"not told by the motion: {', '.join(rest)}; name them: --names t,q,..."] if rest else [])
-    return {**({clock: "time"} if clock else {}), x: "position", v: "velocity"}
+    return {**({clock: "time"} if clock else {}), **named}
+
+
+def _follows(x: Array, asked: Array) -> bool:
+    """Return whether a column (n,) is another one some samples later, in its size if not in its sense."""
+    x, asked = (y[:: len(x) // ROWS + 1] for y in (x, asked))
+    latest = len(x) // LATEST
+    left = {d: _left(x[latest:], asked[latest - d : len(asked) - d]) for d in range(latest + 1)}
+    best = min(left, key=lambda d: left[d][0])
+    return best > 0 and left[best][0] < 1.0 - FOLLOWS and 1.0 / AS_FAR < abs(left[best][1]) < AS_FAR
+
+
+def _left(x: Array, y: Array) -> tuple[float, float]:
+    """Return the share of the variance of one column (n,) that a line over another one leaves, and its slope."""
+    x, y = x - x.mean(), y - y.mean()
+    slope = float(x @ y) / max(float(y @ y), TINY)
+    return float(np.sum((x - slope * y) ** 2)) / max(float(x @ x), TINY), slope
+
+
+def _swings_to_rest(x: Array) -> bool:
+    """Return whether a column (n,) crosses its last value again and again, and less far at last."""
+    off, third = x - np.median(x[-len(x) // 10 :]), len(x) // 3
+    clear = np.sign(off[np.abs(off) > CLEAR * np.abs(off).max()])
+    return int(np.sum(np.diff(clear) != 0.0)) >= CROSSINGS and bool(np.ptp(off[-third:]) < DYING * np.ptp(off[:third]))
 
 
 def named_by_blocks(tables: Tables, rate: float | None, joints: int, guesses: list[str]) -> dict[Place, str]:

@@ -7,6 +7,8 @@ from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+import numpy as np
+
 from sher3_machines.intake.readers.lerobot import is_data_set, read_data_set
 from sher3_machines.intake.tables import UNNAMED, Tables, read_tables
 
@@ -22,6 +24,9 @@ NUMBERED = re.compile(rf"(?i:(?P<group>(?:[^/]+/)*?{WORD})/(?P<column>.+))")
 FILE = re.compile(r"(?P<group>[^/]+)/(?P<column>.+)")
 """A column of a file of a folder."""
 DIGITS = re.compile(r"[ _-]?\d+")
+LONGER = 1.1
+"""Duration of one file over that of another from which they are no channels of one log, which start and stop together.
+"""
 
 
 def runs_of(data: Sequence[Path]) -> dict[str, Tables]:
@@ -38,16 +43,18 @@ def runs_of(data: Sequence[Path]) -> dict[str, Tables]:
 
 
 def episodes_in(tables: Tables, named: re.Pattern[str] = NUMBERED) -> dict[str, Tables]:
-    """Return the runs of a file or folder by name: groups, or files, numbered as runs are with the same columns.
+    """Return the runs of a file or folder by name: groups numbered as runs are, or files, with the same columns.
 
-    What stands beside them belongs to each of them. Empty where there are no two such groups.
+    What stands beside them belongs to each of them. Empty where there are no two such groups. Files are runs where each
+    holds a whole machine and they differ in a number, or where they cover different stretches of time.
     """
     parts: dict[str, Tables] = defaultdict(dict)
     for name, x in tables.items():
         if match := named.fullmatch(name):
             parts[match["group"]][match["column"]] = x
     kinds = {(DIGITS.sub("#", group), *sorted(part)) for group, part in parts.items()}
-    if len(parts) < 2 or len(kinds) > 1 or (named is FILE and not all(map(_whole, parts.values()))):
+    runs = len(kinds) == 1 and (named is NUMBERED or all(map(_whole, parts.values())))
+    if len(parts) < 2 or not (runs or (named is FILE and _apart(list(parts.values())))):
         return {}
     beside = {name: x for name, x in tables.items() if not name.startswith(tuple(f"{group}/" for group in parts))}
     return {group.replace("/", "_"): {**beside, **part} for group, part in parts.items()}
@@ -68,6 +75,25 @@ def _whole(tables: Tables) -> bool:
     """
     alike = [DIGITS.sub("#", name) for name in tables if not UNNAMED.fullmatch(name)]
     return any(x.ndim == 2 for x in tables.values()) or len(set(alike)) < len(alike)
+
+
+def _apart(files: Sequence[Tables]) -> bool:
+    """Return whether files of the same columns were recorded at different times, or for different ones: they are runs.
+
+    Channels and joints of one machine are logged over one stretch of time, whatever their rates.
+    """
+    starts, ends = np.array([_stretch(tables) for tables in files]).T
+    spans = ends - starts
+    alike = len({tuple(sorted(tables)) for tables in files}) == 1
+    return alike and bool(spans.max() > LONGER * spans.min() or starts.max() >= ends.min())
+
+
+def _stretch(tables: Tables) -> tuple[float, float]:
+    """Return the first and last number of the first column that grows all along, else the numbers of the rows."""
+    for x in tables.values():
+        if x.ndim == 1 and len(x) > 1 and (np.diff(x) >= 0.0).all() and x[-1] > x[0]:
+            return float(x[0]), float(x[-1])
+    return 0.0, float(max(map(len, tables.values()), default=0))
 
 
 def longest(path: Path) -> Tables:

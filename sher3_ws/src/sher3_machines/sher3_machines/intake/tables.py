@@ -19,6 +19,7 @@ from sher3_machines.intake.readers.hdf5 import read_hdf5
 from sher3_machines.intake.readers.mat import read_mat
 from sher3_machines.intake.readers.packed import ENDINGS as PACKED
 from sher3_machines.intake.readers.packed import unpack
+from sher3_machines.intake.readers.shapes import SAMPLES
 from sher3_machines.intake.readers.structured import read_lines, read_lists, read_npy, read_npz, read_parquet
 from sher3_machines.intake.readers.text import read_table
 from sher3_machines.intake.spelling import table_of
@@ -26,8 +27,6 @@ from sher3_machines.intake.spelling import table_of
 Tables = dict[str, Array]
 MAX_BYTES = 2_000_000_000
 """Largest file that is read."""
-SAMPLES = 20
-"""Entries from which a list is one of samples, and no parameter of each joint."""
 UNNAMED = re.compile(r"c\d+")
 """Names of columns without a header."""
 WIDE = 10

@@ -75,3 +75,14 @@ def test_a_column_without_a_number_is_no_reference():
     tables = {"t": T, "q": np.sin(T), "Servo 1 (us)": np.full(len(T), np.nan), "Servo 3 (us)": 1500.0 + np.sin(3.0 * T)}
     (found,) = together(placed(tables, "t", []))[0].values()
     assert found["reference"][0] == "Servo 3 (us)"
+
+
+@pytest.mark.parametrize("drive", ["Motorspannung", "Motorstrom [A]", "pwm"])
+def test_a_reference_that_stays_is_none_where_a_drive_moves_the_axis(drive):
+    t = np.linspace(0.0, 10.0, 200)
+    columns = {"Zeit": t, "Position": np.sin(t), "Sollposition": 0.0 * t, drive: np.cos(t)}
+    found = placed(columns, "Zeit", guesses := [])
+    assert {signal for signal, _ in found.values()} <= {"position", "command", "effort"}
+    assert "never changes, and is not used: Sollposition" in guesses
+    alone = placed({name: x for name, x in columns.items() if name != drive}, "Zeit", [])
+    assert ("Sollposition", None) in alone

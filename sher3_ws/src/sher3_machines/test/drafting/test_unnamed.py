@@ -39,6 +39,44 @@ def test_a_matrix_is_a_table_too(tmp_path):
     assert (signals["position"]["column"], signals["position"]["index"]) == ("data", 1)
 
 
+def followed(seed, gain=1.0):
+    """Time, a reference in steps or a chirp, and what follows it late, of drawn rate, lag and sense."""
+    draw = np.random.default_rng(seed)
+    rate, lag = draw.uniform(50.0, 500.0), draw.uniform(0.03, 0.08)
+    t = np.arange(int(draw.uniform(8.0, 30.0) * rate)) / rate
+    levels = draw.uniform(-1.0, 1.0, int(t[-1]) + 2)[t.astype(int)]
+    asked = levels if seed % 2 else np.sin(2.0 * t + 0.1 * t**2)
+    place = np.interp(t - lag, t, asked) * draw.choice([-1.0, 1.0]) * gain
+    return np.column_stack([t, asked, np.round(place + draw.normal(0.0, 0.003, len(t)), 3)])
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_a_place_is_what_follows_another_column_late_and_as_far(tmp_path, seed):
+    order = np.random.default_rng(seed).permutation(3)
+    np.savetxt(tmp_path / "a.csv", followed(seed)[:, order], delimiter=",")
+    signals = parse_yaml(draft_of(tmp_path / "a.csv").text)["axes"][0]["signals"]
+    column = {what: f"c{list(order).index(i)}" for i, what in enumerate(("time", "reference", "position"))}
+    assert {k: signals[k]["column"] for k in signals} == {k: column[k] for k in ("position", "reference")}
+    np.savetxt(tmp_path / "b.csv", followed(seed, 3.0)[:, order], delimiter=",")
+    with pytest.raises(MachineError, match="--names"):
+        draft_of(tmp_path / "b.csv")
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_column_alone_is_a_place_where_it_swings_to_rest(tmp_path, seed):
+    draw = np.random.default_rng(seed)
+    t = np.arange(0.0, 10.0, 0.01)
+    fades = np.exp(-t * draw.uniform(0.3, 0.8))
+    swing = fades * np.cos(draw.uniform(4.0, 12.0) * t + draw.uniform(0.0, 6.0))
+    for name, x in {"swing": swing, "oven": fades}.items():
+        read = 20.0 + x + draw.normal(0.0, 0.002, len(t))
+        np.savetxt(tmp_path / f"{name}.csv", np.column_stack([t, read]), delimiter=",")
+    described = parse_yaml(draft_of(tmp_path / "swing.csv").text)
+    assert described["axes"][0]["signals"]["position"]["column"] == "c1"
+    with pytest.raises(MachineError, match="--names"):
+        draft_of(tmp_path / "oven.csv")
+
+
 def test_given_names_are_in_the_words_of_the_file(tmp_path):
     np.savetxt(tmp_path / "a.csv", swing(2)[:, 1:], delimiter=",")
     described = parse_yaml(draft_of(tmp_path / "a.csv", rate=100.0, names=["q", "", "tau"]).text)

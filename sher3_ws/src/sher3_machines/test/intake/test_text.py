@@ -127,3 +127,12 @@ def test_a_unit_behind_a_stroke_is_one(tmp_path):
         "AngVel [rad/s]",
     ]
     assert list(tables(tmp_path, "temp/min,temp/max\n0,1\n1,2\n")) == ["temp/min", "temp/max"]
+
+
+@pytest.mark.parametrize("word", ["OK", "baseline", "2024-13-77"])
+@pytest.mark.parametrize("place", [0, 1, 2])
+def test_words_beside_the_numbers_of_the_first_row_make_no_header(tmp_path, word, place):
+    rows = [[f"{0.01 * i:.2f}", f"{i * i}"] for i in range(40)]
+    (tmp_path / "a.csv").write_text("\n".join(",".join([*r[:place], word, *r[place:]]) for r in rows))
+    found = read_tables(tmp_path / "a.csv")
+    assert len(found) == 2 and all(len(x) == 40 for x in found.values())

@@ -8,6 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 from sher3_diagnosis.channel import Array
 
+SAMPLES = 20
+"""Entries from which a list is one of samples, and no parameter of each joint."""
+
 
 def plain(x: NDArray[np.generic]) -> Array:
     """Return an array as numbers; a single row (1, n) or column (n, 1) becomes (n,)."""

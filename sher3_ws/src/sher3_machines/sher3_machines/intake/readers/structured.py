@@ -15,7 +15,7 @@ from sher3_diagnosis.channel import Array
 from sher3_machines.errors import no_reader
 from sher3_machines.intake.readers.cells import value_of
 from sher3_machines.intake.readers.epics import is_archive, tables_of_archive
-from sher3_machines.intake.readers.shapes import plain
+from sher3_machines.intake.readers.shapes import SAMPLES, plain
 from sher3_machines.intake.readers.text import decoded
 
 MAX_BYTES = 2_000_000_000
@@ -40,8 +40,9 @@ def read_npy(path: Path) -> dict[str, Array]:
 def read_lists(path: Path) -> dict[str, Array]:
     """Return named lists (n, ...) of a JSON file; objects nest as `name/key`, a list of objects is a table.
 
-    A list of objects at the top is a table too, whose columns have the keys' names. The answer of an EPICS archiver is
-    a table for each of its channels. Raises ValueError where the top level is neither an object nor a list.
+    A list of objects at the top is a table too, whose columns have the keys' names; one of whole records is a run for
+    each, `run_1/key`. The answer of an EPICS archiver is a table for each of its channels. Raises ValueError where the
+    top level is neither an object nor a list.
     """
     data = read_json(path, MAX_TEXT_BYTES)
     if is_archive(data):
@@ -58,11 +59,25 @@ def _collect(name: str, value: object, found: dict[str, object]) -> None:
     if isinstance(value, dict):
         for key, part in value.items():
             _collect(f"{below}{key}", part, found)
+    elif isinstance(value, list) and value and all(map(_is_record, value)):
+        for i, part in enumerate(value, 1):
+            _collect(f"{below}run_{i}", part, found)
     elif isinstance(value, list) and value and all(isinstance(row, dict) for row in value):
         for key in value[0]:
             _collect(f"{below}{key}", _as_rows([row.get(key) for row in value]), found)
     elif isinstance(value, list) and value:
         found[name] = value
+
+
+def _is_record(value: object) -> bool:
+    """Return whether an entry of a list is a record of its own: a list of objects, or lists of one length, of samples.
+
+    A scan beside each sample is one list, and no record.
+    """
+    if isinstance(value, dict):
+        lengths = [len(x) for x in value.values() if isinstance(x, list) and len(x) >= SAMPLES]
+        return len(lengths) > len(set(lengths)) or any(map(_is_record, value.values()))
+    return isinstance(value, list) and len(value) >= SAMPLES and all(isinstance(row, dict) for row in value)
 
 
 def _as_rows(column: list[Any]) -> object:
