@@ -86,6 +86,12 @@ def use_post(context: Context, post: Post) -> None:
     _posts[context] = post
 
 
+def forget(context: Context) -> None:
+    """Forget clock and post of a context that has ended: a post holds its nodes, and each of them the context."""
+    _clocks.pop(context, None)
+    _posts.pop(context, None)
+
+
 def clock_of(node: Node) -> Clock:
     """Return the clock of the node's context; by default the wall clock of period `SHER3_CONTROL_PERIOD` [s]."""
     return context_clock(node.context)

@@ -33,6 +33,7 @@ from sher3_runtime.port import UnknownTopic as UnknownTopic
 from sher3_runtime.port import clock_of as clock_of
 from sher3_runtime.port import context_clock as context_clock
 from sher3_runtime.port import find_topic as find_topic
+from sher3_runtime.port import forget as forget
 from sher3_runtime.port import ports as ports
 from sher3_runtime.port import qos_profile as qos_profile
 from sher3_runtime.port import raw_mode as raw_mode

@@ -26,7 +26,7 @@ from sher3_runtime.composed.composition import Composition
 from sher3_runtime.domains import own_domain
 from sher3_runtime.execution.executor import RawExecutor
 from sher3_runtime.execution.spinning import close
-from sher3_runtime.ports import NODE_OPTIONS, advertise, ports, raw_mode, subscribe, use_clock, use_post
+from sher3_runtime.ports import NODE_OPTIONS, advertise, forget, ports, raw_mode, subscribe, use_clock, use_post
 from sher3_runtime.post import Post
 from sher3_runtime.tick import Tick
 
@@ -278,6 +278,7 @@ class Graph:
         finally:
             self.nodes, self._paused = [], []
             self.context.try_shutdown()
+            forget(self.context)
 
     def __enter__(self) -> Graph:
         return self

@@ -46,8 +46,6 @@ KEPT = "healthy.jsonl"
 """File of the sessions that are kept, a line of JSON each."""
 REGIMES = ("bench", "near_tissue", "free", "free")
 """Regimes of the sessions in turn; on the bench there are excitations instead of a surgeon."""
-SESSIONS_A_PROCESS = 20
-"""Sessions after which a process ends: each robot that was built leaves 3 MB behind."""
 WARM, SWING, WARMING = 23.0, 5.0, 240.0
 """Mean temperature of the structure, its swing, degC, and the period of that, s."""
 STRETCH = 250
@@ -71,7 +69,7 @@ def run_healthy(
     store = Kept(kept, KEPT)
     begin, found = time.monotonic(), {entry["seed"]: entry["trips"] for entry in store.before()}
     left = [number for number in seeds if number not in found]
-    with ProcessPoolExecutor(jobs, get_context("spawn"), max_tasks_per_child=SESSIONS_A_PROCESS) as pool:
+    with ProcessPoolExecutor(jobs, mp_context=get_context("spawn")) as pool:
         for number, trips in zip(left, pool.map(run_session, [folder] * len(left), left), strict=True):
             found[number] = trips
             store.add([{"seed": number, "trips": trips}])
