@@ -209,13 +209,15 @@ class SupervisorSettings(Settings):
             that drifts by as much after its tare.
         hand_way: low pass on what sensor and drives feel together along one way [s], and the change of it that is too
             much [N]: six times its noise of 13 mN.
+        hand_arm: lever at which a torque counts as a force [m]: at this arm torques of healthy running come as near to
+            the limits as its forces. At 15 mm their noise along one way stopped a healthy robot in half an hour; at 20
+            mm a sensor turned by 20 degrees is noticed after 0.16 mm (0.03).
         hand_least: hand that the drives feel for certain behind `hand_notice` [N]: 3.5 times their noise there, and
             below the dead band of the law.
         hand_notice: low pass on what the drives feel of a hand [s].
         hand_travel: farthest that the law may take the tip while the drives feel no hand [m]; a hand that arrives takes
             up to `linear_gain` times `hand_notice` times `hand_least`, 18 um, and one that turns round twice as much.
-        hand_reach: height above the tip of the point whose travel by turning is added, and lever at which a torque
-            counts as a force [m]. There the noise of a torque is 0.9 of that of a force.
+        hand_reach: height above the tip of the point whose travel by turning is added [m].
     """
 
     stream_age_limit: Seconds = 0.1
@@ -241,10 +243,11 @@ class SupervisorSettings(Settings):
     hand_settling: Seconds = 0.36
     hand_level: Force = 0.2
     hand_way: tuple[Seconds, Force] = (0.8, 0.08)
+    hand_arm: Annotated[Number, Field(gt=0.0, le=1.0)] = 0.0175
     hand_least: Force = 0.07
     hand_notice: Seconds = 0.25
     hand_travel: Annotated[Number, Field(gt=0.0, le=0.01)] = 60e-6
-    hand_reach: Annotated[Number, Field(gt=0.0, le=1.0)] = 0.02
+    hand_reach: Annotated[Number, Field(ge=0.0, le=1.0)] = 0.02
 
 
 class ControlSettings(Settings):

@@ -91,7 +91,7 @@ class HandDetector(PlainDetector):
 
     def __init__(self, kinematics: RobotKinematics, settings: ControlSettings) -> None:
         self._settings, law = settings.supervisor, settings.admittance
-        self._twice, self._motion = FeltTwice(kinematics, self._settings.hand_reach), Motion(kinematics)
+        self._twice, self._motion = FeltTwice(kinematics, self._settings.hand_arm), Motion(kinematics)
         self._lag = np.concatenate([np.full(LEGS, self._motion.lag[:LEGS].mean()), self._motion.lag[LEGS:]])
         lags, limits = zip(*self._settings.hand_limits, strict=True)
         self._lags = np.array([*lags, self._settings.hand_memory])[:, None]
@@ -251,7 +251,7 @@ class HandDetector(PlainDetector):
         """Report the doubt (n, 2) that is nearest its limit: a force, or a torque back from its arm."""
         row, torque = np.unravel_index(np.argmax(doubts / limits), doubts.shape)
         value, limit = float(doubts[row, torque]), float(limits[row, torque])
-        arm, unit = (self._settings.hand_reach, "N m") if torque else (1.0, "N")
+        arm, unit = (self._settings.hand_arm, "N m") if torque else (1.0, "N")
         harder = Action.POWER_OFF if self._held_more[torque] else Action.NONE
         self._found = self._found._replace(value=value * arm, limit=limit * arm, unit=unit, harder=harder)
 

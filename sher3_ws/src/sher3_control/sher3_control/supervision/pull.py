@@ -20,12 +20,12 @@ class Pull:
 
     Args:
         kinematics: of the robot.
-        settings: `supervisor.hand_level`, what may be taken for granted, and `supervisor.hand_reach`.
+        settings: `supervisor.hand_level`, what may be taken for granted, and `supervisor.hand_arm`.
     """
 
     def __init__(self, kinematics: RobotKinematics, settings: ControlSettings) -> None:
         self._limit = settings.supervisor.hand_level
-        self._twice = FeltTwice(kinematics, settings.supervisor.hand_reach)
+        self._twice = FeltTwice(kinematics, settings.supervisor.hand_arm)
         self._reports: deque[tuple[Vector, Vector]] = deque(maxlen=settings.tare.samples)
 
     def hear(self, reports: Iterable[JointSample]) -> None:
