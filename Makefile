@@ -3,6 +3,7 @@ VENV ?= .venv
 BIN := $(VENV)/bin
 INSTALLED := $(VENV)/.installed
 READY := $(VENV)/.ready
+PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps
 # Why a test in wall time was run again is printed: a rerun hides no cause.
 PYTEST := $(BIN)/pytest --durations 10 -raR --rerun-show-tracebacks
 
@@ -60,11 +61,14 @@ messages: $(INSTALLED)  ## typed messages once more, where the set-up could not 
 
 # No download address here or in requirements.txt: pip's own configuration says where from; the hashes say what.
 # `requirements.txt` names everything there is to install, so pip need not look for more. Byte code is made where a module
-# is first imported: of 148 MB of sources the tests import 41.
+# is first imported: of 148 MB of sources the tests import 41. Two halves at a time: pip waits for the network and unpacks
+# one wheel after another.
 $(INSTALLED): requirements.txt pyproject.toml tools/find-python
 	test -x $(BIN)/python || "$$(tools/find-python)" -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile --no-deps --require-hashes -r requirements.txt
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation -e .
+	for half in 0 1; do awk -v half=$$half '/^[a-z]/ { n++ } n % 2 == half' requirements.txt > $(VENV)/half-$$half.txt; done
+	$(PIP) --no-compile --require-hashes -r $(VENV)/half-0.txt & first=$$!; \
+	$(PIP) --no-compile --require-hashes -r $(VENV)/half-1.txt; second=$$?; wait $$first && exit $$second
+	$(PIP) --no-build-isolation -e .
 	touch $@
 
 $(VENV)/.kernels: $(INSTALLED)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import signal
 import subprocess
-import time
 from dataclasses import replace
 from pathlib import Path
 
@@ -137,7 +136,6 @@ def test_the_loop_across_processes(sher3, domain, tmp_path):
     robot, corrected = tmp_path / "robot_case", tmp_path / "corrected_case"
     excitations = ("gap", "excite", "sweep,loads", "--domain", domain)
     with Up(tmp_path / "robot.yaml", domain):
-        time.sleep(1.0)
         done = sher3(*excitations, "--repeats", 2, "-o", robot, timeout=300.0)
         assert done.returncode == 0, done.stderr
     done = sher3("gap", "diagnose", robot, "--out", tmp_path, "--json", timeout=120.0)

@@ -12,6 +12,7 @@ import pytest
 import sher3.gap as gap
 import yaml
 from browser import CHROMIUM, browse
+from invoking import invoke
 from matplotlib import rc_context
 from matplotlib.figure import Figure
 from sher3_bags import Run, stream
@@ -27,7 +28,6 @@ from sher3_view.figures import figures_section
 from sher3_view.ghost import ghost_of
 from sher3_view.live.plot import plot_svg
 from sher3_view.live.snapshot import Snapshot
-from typer.testing import CliRunner
 
 RUNS = "document.title=1337"
 EVIL = f"""x" onload="{RUNS}" '><script>{RUNS}</script><img src=q onerror={RUNS}><svg onload='{RUNS}'>$\\x$ {{{{7}}}}"""
@@ -52,7 +52,7 @@ def description() -> dict:
 
 
 def called(*words: str) -> None:
-    result = CliRunner().invoke(app, list(words))
+    result = invoke(app, list(words))
     assert result.exit_code == 0, result.output
 
 

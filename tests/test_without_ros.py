@@ -47,13 +47,18 @@ main()
 """
 
 
-@pytest.fixture
-def alone(tmp_path: Path):
-    """Return `run(*arguments)`: the command line where no library of the robot can be imported."""
+@pytest.fixture(scope="module")
+def names() -> set[str]:
+    """Packages that only the robot needs."""
     owners = packages_distributions().items()
-    names = {n for n, of in owners if any(d.startswith("ros-") or d in LIBRARIES for d in of)}
-    assert {"rclpy", "sensor_msgs", "can", "canopen", "mcap"} <= names
-    names.add("pinocchio")  # its files lie below a prefix of their own, where packages are not looked for
+    found = {n for n, of in owners if any(d.startswith("ros-") or d in LIBRARIES for d in of)}
+    assert {"rclpy", "sensor_msgs", "can", "canopen", "mcap"} <= found
+    return found | {"pinocchio"}  # its files lie below a prefix of their own, where packages are not looked for
+
+
+@pytest.fixture
+def alone(tmp_path: Path, names: set[str]):
+    """Return `run(*arguments)`: the command line where no library of the robot can be imported."""
     script = tmp_path / "alone.py"
     script.write_text(BLOCKED.format(names=names))
     environment = {k: v for k, v in os.environ.items() if k not in ("PYTHONPATH", "AMENT_PREFIX_PATH")}

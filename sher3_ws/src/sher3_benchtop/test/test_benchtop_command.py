@@ -5,18 +5,18 @@ from __future__ import annotations
 import json
 
 import pytest
+from invoking import invoke
 from sher3_bags.errors import BagError
 from sher3_benchtop.cli import app
 from sher3_bringup.errors import ConfigurationError
 from sher3_common import Sher3Error
 from sher3_kinematics.errors import Unreachable
 from sher3_kinematics.tip_deflection import LoadBeyondRange
-from typer.testing import CliRunner
 
 
 def refusal(*arguments: str) -> BaseException:
     """Return the error that a command line ends with."""
-    result = CliRunner().invoke(app, list(arguments))
+    result = invoke(app, list(arguments))
     assert isinstance(result.exception, Sher3Error), result.output
     return result.exception
 
@@ -42,6 +42,6 @@ def test_bags_that_are_not_there_are_named(tmp_path):
 
 
 def test_spread_prints_percentiles():
-    result = CliRunner().invoke(app, ["--spread", "3", "--json"])
+    result = invoke(app, ["--spread", "3", "--json"])
     low, middle, high = json.loads(result.output)["accuracy/y_motion/y/mean"]
     assert 0.0 < low < middle < high

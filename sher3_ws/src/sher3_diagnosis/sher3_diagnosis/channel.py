@@ -53,7 +53,7 @@ class Residual:
 
     @cached_property
     def counting(self) -> NDArray[np.int64]:
-        """Indices of the samples that count: taking them is some ten times as fast as a mask."""
+        """Indices (k,) of the samples that count: taking them is some ten times as fast as a mask."""
         return np.flatnonzero(self.ok)
 
     def rms(self) -> Array:

@@ -4,10 +4,10 @@ import json
 import sys
 
 import pytest
+from invoking import invoke
 from sher3_challenge.errors import ChallengeError
 from sher3_gap_cli.app import app
 from sher3_gap_cli.commands.challenge import parse_gap, parse_seeds, plants_of
-from typer.testing import CliRunner
 
 ROW = {"case": "a", "truth": "no_gap", "said": "no_gap", "fault": "-", "answer": "-", "families": "-"}
 
@@ -24,7 +24,7 @@ def test_a_gap_that_is_no_range_is_named(text):
 
 
 def test_the_command_names_a_bad_range():
-    result = CliRunner().invoke(app, ["challenge", "--seeds", "three"])
+    result = invoke(app, ["challenge", "--seeds", "three"])
     assert result.exit_code == 2 and "seeds are not a range" in result.output
 
 
@@ -36,7 +36,7 @@ def test_finished_folders_are_printed_together(tmp_path):
         (tmp_path / name).mkdir()
         (tmp_path / name / "scores.json").write_text(json.dumps(kept))
         arguments += ["--merge", str(tmp_path / name)]
-    result = CliRunner().invoke(app, ["challenge", *arguments])
+    result = invoke(app, ["challenge", *arguments])
     assert result.exit_code == 0 and "2 cases in 2 s" in result.output
 
 
@@ -44,15 +44,15 @@ def test_plants_that_are_left_out_are_told_with_the_extra_that_brings_them(monke
     for name in [name for name in sys.modules if name.startswith("sher3_challenge.plants.mujoco")]:
         monkeypatch.delitem(sys.modules, name)
     monkeypatch.setitem(sys.modules, "mujoco", None)
-    result = CliRunner(env={"COLUMNS": "300"}).invoke(app, ["challenge", "--without", "gremlins"])
+    result = invoke(app, ["challenge", "--without", "gremlins"], COLUMNS="300")
     assert result.exit_code == 2 and "no such effect" in result.output
     assert "without plant mujoco" in result.output and "sher3[mujoco]" in result.output
-    result = CliRunner().invoke(app, ["challenge", "--plant", "mujoco"])
+    result = invoke(app, ["challenge", "--plant", "mujoco"])
     assert result.exit_code == 2 and "sher3[mujoco]" in result.output
 
 
 def test_calibrate_names_a_folder_without_labels(tmp_path):
-    result = CliRunner().invoke(app, ["calibrate", f"lumped={tmp_path}"])
+    result = invoke(app, ["calibrate", f"lumped={tmp_path}"])
     assert result.exit_code == 2 and "no labelled case" in result.output and str(tmp_path) in result.output
 
 

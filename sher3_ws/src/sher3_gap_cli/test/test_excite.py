@@ -4,15 +4,15 @@ import json
 
 import numpy as np
 import pytest
+from invoking import invoke
 from sher3_bags import read_case
 from sher3_gap.excitation import catalogue
 from sher3_gap_cli.app import app
 from simulated import ROBOT
-from typer.testing import CliRunner
 
 
 def test_the_standard_set_is_listed():
-    listed = json.loads(CliRunner().invoke(app, ["excite", "--json"]).stdout)["excitations"]
+    listed = json.loads(invoke(app, ["excite", "--json"]).stdout)["excitations"]
     assert [e["name"] for e in listed] == list(catalogue())
 
 
@@ -22,7 +22,7 @@ def test_simulated_excitations_make_a_case(tmp_path):
         "schema: sher3.effects/1\neffects: [{effect: lead_error, actuator: roll, parameters: {relative: 0.005}}]\n"
     )
     arguments = ["excite", "sweep,task_0.8", "--simulate", "--repeats", "2", "--duration", "2.5", "--json"]
-    result = CliRunner().invoke(app, [*arguments, "--effects", str(effects), "-o", str(tmp_path / "case")])
+    result = invoke(app, [*arguments, "--effects", str(effects), "-o", str(tmp_path / "case")])
     assert result.exit_code == 0, result.output
     case = read_case(tmp_path / "case")
     assert [r.metadata.excitation for r in case.runs] == ["sweep", "sweep", "task_0.8", "task_0.8"]
@@ -32,5 +32,5 @@ def test_simulated_excitations_make_a_case(tmp_path):
 
 @pytest.mark.parametrize("which", ["gallop", "sweep_9", "gone.yaml"])
 def test_unknown_excitations_are_refused(which, tmp_path):
-    result = CliRunner().invoke(app, ["excite", which, "--simulate", "-o", str(tmp_path / "case")])
+    result = invoke(app, ["excite", which, "--simulate", "-o", str(tmp_path / "case")])
     assert result.exit_code == 2 and result.stderr.startswith("sher3: ")

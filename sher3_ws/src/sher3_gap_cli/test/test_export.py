@@ -4,12 +4,12 @@ import json
 
 import pytest
 import yaml
+from invoking import invoke
 from sher3_chain.manipulator.description import BEHIND
 from sher3_diagnosis.verdict import Interval
 from sher3_export.check import check as checking
 from sher3_export.check.check import Checked, JointGap
 from sher3_gap_cli.app import app
-from typer.testing import CliRunner
 
 VERDICT = {
     "schema": "sher3.verdict/1",
@@ -53,7 +53,7 @@ def call(tmp_path, monkeypatch):
     (tmp_path / "m.xml").write_text(
         "<mujoco><worldbody><body><joint name='j'/><geom size='.1'/></body></worldbody></mujoco>"
     )
-    return lambda *words: CliRunner().invoke(app, ["export", "verdict.json", *words])
+    return lambda *words: invoke(app, ["export", "verdict.json", *words])
 
 
 def test_a_model_is_written_and_what_it_cannot_express_is_listed(call, tmp_path):

@@ -5,6 +5,7 @@ import re
 import shutil
 
 import pytest
+from invoking import invoke
 from sher3_bags import write_case
 from sher3_diagnosis.verdict import Cause, Interval, Parameter, Verdict, Where
 from sher3_effects import library, load_effects, plants
@@ -14,7 +15,6 @@ from sher3_gap_cli.app import app
 from sher3_gap_cli.options import RequestError
 from sher3_gap_cli.workers import run_on_dask
 from simulated import ROBOT, runs_of
-from typer.testing import CliRunner
 
 TRUTH = plants()["coulomb_friction"]("delta_2", force=1.2)
 
@@ -28,7 +28,7 @@ def case(tmp_path_factory):
 @pytest.fixture(scope="module")
 def answered(case, tmp_path_factory):
     out = tmp_path_factory.mktemp("out")
-    result = CliRunner().invoke(app, ["diagnose", str(case), "--out", str(out)])
+    result = invoke(app, ["diagnose", str(case), "--out", str(out)])
     assert result.exit_code == 0, result.output
     return out, result
 
@@ -59,7 +59,7 @@ def test_the_report_stands_alone_and_has_every_section(answered):
 def test_apply_shrinks_the_gap_end_to_end(answered, case, tmp_path):
     effects = tmp_path / "effects.yaml"
     command = ["apply", str(answered[0] / "verdict.json"), "-o", str(effects), "--case", str(case), "--json"]
-    result = CliRunner().invoke(app, command)
+    result = invoke(app, command)
     assert result.exit_code == 0, result.output
     (effect,) = load_effects(effects)
     assert (effect.id, effect.actuator) == ("coulomb_friction", "delta_2")
@@ -74,7 +74,7 @@ def test_several_cases_in_parallel_and_one_of_them_broken(case, tmp_path):
     broken = shutil.copytree(case, tmp_path / "broken")
     next((broken / "run_00").glob("*.mcap")).write_bytes(b"no bag")
     options = ["--out", str(tmp_path / "o"), "--jobs", "2", "--no-report", "--json"]
-    result = CliRunner().invoke(app, ["diagnose", str(case), str(broken), *options])
+    result = invoke(app, ["diagnose", str(case), str(broken), *options])
     assert result.exit_code == 2
     answers = {entry["case"]: entry for entry in json.loads(result.stdout)["cases"]}
     assert "error" in answers[str(broken)]
@@ -105,7 +105,7 @@ def test_dask_gives_the_same_verdict(answered, case):
 )
 def test_bad_requests_end_with_one_sentence_and_code_2(arguments, words, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    result = CliRunner().invoke(app, arguments)
+    result = invoke(app, arguments)
     assert result.exit_code == 2
     assert words in result.stderr and "Traceback" not in result.output
     assert "reading" not in result.stderr
@@ -136,18 +136,18 @@ def test_another_machine_is_refused_with_what_to_do_instead(arguments, remedy, t
     at = {"stage": "transmission", "actuator": "elbow", "regime": "everywhere", "confidence": 1.0}
     where = Where(gap=1e-3, floor=1e-6, unit="rad", **at)
     Verdict(status="attributed", where=[where], causes=[cause]).write(tmp_path / "arm.json")
-    result = CliRunner().invoke(app, arguments)
+    result = invoke(app, arguments)
     assert result.exit_code == 2 and "another machine" in result.stderr and remedy in result.stderr
 
 
 def test_a_verdict_without_causes_has_nothing_to_apply(tmp_path):
     Verdict(status="no_gap").write(tmp_path / "verdict.json")
-    result = CliRunner().invoke(app, ["apply", str(tmp_path / "verdict.json")])
+    result = invoke(app, ["apply", str(tmp_path / "verdict.json")])
     assert result.exit_code == 2 and "no cause" in result.stderr
 
 
 def test_library_lists_every_effect():
-    rows = json.loads(CliRunner().invoke(app, ["library", "--json"]).stdout)["effects"]
+    rows = json.loads(invoke(app, ["library", "--json"]).stdout)["effects"]
     assert {row["effect"] for row in rows} == set(every()) > set(library())
     assert all(row["explanation"].strip() and row["parameters"] for row in rows)
 

@@ -7,8 +7,8 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+from invoking import invoke
 from sher3_gap_cli.app import app
-from typer.testing import CliRunner
 
 sys.path.append(str(Path(__file__).parents[2] / "sher3_chain" / "test"))
 
@@ -32,7 +32,7 @@ def folder(tmp_path_factory):
 
 
 def run(folder, *words):
-    return CliRunner().invoke(app, ["check", *(str(folder / w) if "." in w else w for w in words)])
+    return invoke(app, ["check", *(str(folder / w) if "." in w else w for w in words)])
 
 
 @pytest.fixture(scope="module")
@@ -91,7 +91,7 @@ def test_what_makes_no_check_is_said(folder, words, said):
 def test_two_traces_are_compared(folder):
     def compared(*words):
         words = ["compare-simulators", *(str(folder / w) for w in words), "--json"]
-        return CliRunner().invoke(app, [*words, "--model", str(folder / "arm.xml")])
+        return invoke(app, [*words, "--model", str(folder / "arm.xml")])
 
     found = json.loads(compared("good.npz", "rubbing.npz").stdout)
     assert "Coulomb friction on shoulder" in found["cause"] and found["settings"] == {"good": "", "rubbing": ""}

@@ -4,14 +4,14 @@ import json
 
 import numpy as np
 import pytest
+from invoking import invoke
 from sher3_bags import Run, RunMetadata, stream, write_run
 from sher3_description import load_robot
 from sher3_gap_cli.app import app
-from typer.testing import CliRunner
 
 
 def call(*words):
-    return CliRunner().invoke(app, [str(word) for word in words])
+    return invoke(app, words)
 
 
 def test_a_description_is_drafted_and_its_guesses_are_said(tmp_path):

@@ -3,10 +3,10 @@
 import json
 
 import pytest
+from invoking import invoke
 from sher3_gap.live import gap_monitor_node
 from sher3_gap.live.gap_monitor_node import StageStatus
 from sher3_gap_cli.app import app
-from typer.testing import CliRunner
 
 
 @pytest.mark.parametrize("arguments", [[], ["--json"]])
@@ -17,7 +17,7 @@ def test_the_command_prints_one_object_a_second_when_asked(arguments, monkeypatc
             told(2, [StageStatus("drive", "tilt", 3e-6, 1e-6, "m/s")], None)
 
     monkeypatch.setattr(gap_monitor_node, "run", run)
-    result = CliRunner().invoke(app, ["monitor", *arguments])
+    result = invoke(app, ["monitor", *arguments])
     assert result.exit_code == 0, result.output
     rows = [json.loads(line) for line in result.stdout.splitlines()]
     stage = {"stage": "drive", "actuator": "tilt", "gap": 3e-6, "floor": 1e-6, "unit": "m/s", "ratio": 3e-6 / 1e-6}

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from invoking import invoke
 from sher3_common import FileError
 from sher3_diagnosis.report.page import render
 from sher3_effects import add_library, library, load_effects, plants, save_effects, to_effects
@@ -10,7 +11,6 @@ from sher3_gap.sher import diagnose_runs
 from sher3_gap_cli.app import app
 from sher3_gap_cli.library.page import library_data, page_text
 from simulated import ROBOT, runs_of, signals
-from typer.testing import CliRunner
 
 PAGE = '''
 """Bent screw: once in two thirds of a revolution the screw rubs and pushes the load ahead."""
@@ -114,9 +114,9 @@ def test_python_that_nobody_trusts_is_not_run(tmp_path, monkeypatch):
     for named in (tmp_path / "page.py", tmp_path):
         with pytest.raises(FileError, match=r"page\.py: is Python.*--trust"):
             add_library([named])
-        result = CliRunner().invoke(app, ["library", "--library", str(named)])
+        result = invoke(app, ["library", "--library", str(named)])
         assert result.exit_code == 2 and "--trust" in result.output
     with pytest.raises(FileError, match=r"page\.py: is Python"):
         load_effects(tmp_path / "effects.yaml")
     assert not ran.exists()
-    assert CliRunner().invoke(app, ["library", "--library", str(tmp_path), "--trust"]).exit_code == 0 and ran.exists()
+    assert invoke(app, ["library", "--library", str(tmp_path), "--trust"]).exit_code == 0 and ran.exists()

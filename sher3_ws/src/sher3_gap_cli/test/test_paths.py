@@ -6,6 +6,7 @@ from contextlib import suppress
 
 import pytest
 import sher3.gap as gap
+from invoking import invoke
 from kinds_of_cases import KINDS, table_of, written
 from meaning import meaningless
 from sher3_common import Sher3Error
@@ -14,7 +15,6 @@ from sher3_effects.registry import VARIABLE
 from sher3_export.writing import TARGETS
 from sher3_gap_cli.app import app
 from sher3_machines import kinds, open_case
-from typer.testing import CliRunner
 
 SENSORS = ("force_sensor", "weights")
 """Kinds of case of a sensor that the simulated robot has, too."""
@@ -29,7 +29,7 @@ WRONG = ("nan", "inf", "None")
 
 
 def call(*words):
-    found = CliRunner().invoke(app, [str(w) for w in words])
+    found = invoke(app, words)
     assert found.exception is None or isinstance(found.exception, SystemExit), found.exception
     assert found.exit_code in (0, 2), found.output
     assert found.exit_code == 0 or found.output.count("sher3: ") == 1, found.output

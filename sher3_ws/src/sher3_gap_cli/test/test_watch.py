@@ -6,13 +6,13 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from invoking import invoke
 from sher3_chain.manipulator.causes.links import OTHER_ROBOT
 from sher3_gap_cli.app import app
 from sher3_gap_cli.watch.judged import OK, STALE, WARN, judged, of_actuators
 from sher3_gap_cli.watch.trajectory import Point, set_points
 from sher3_gap_cli.watch.window import Window
 from sher3_public import one_call
-from typer.testing import CliRunner
 
 ARM = (
     '<robot name="a"><link name="base"/><link name="arm"><inertial><origin xyz="0.2 0 0"/><mass value="2"/>'
@@ -134,7 +134,7 @@ def test_what_is_waited_for_is_said():
 @pytest.mark.graph
 def test_a_joint_that_the_model_lacks_is_refused(tmp_path):
     (tmp_path / "arm.urdf").write_text(ARM)
-    result = CliRunner().invoke(app, ["watch", "--model", str(tmp_path / "arm.urdf"), "--joint", "trun"])
+    result = invoke(app, ["watch", "--model", str(tmp_path / "arm.urdf"), "--joint", "trun"])
     assert result.exit_code == 2 and "the model has no such joint" in result.output
 
 

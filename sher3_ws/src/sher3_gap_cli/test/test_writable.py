@@ -1,9 +1,9 @@
 """What cannot be written is refused before the work that would be lost with it."""
 
 import pytest
+from invoking import invoke
 from sher3_gap_cli.app import app
 from sher3_gap_cli.options import RequestError, check_writable
-from typer.testing import CliRunner
 
 
 def test_where_nothing_could_be_written(tmp_path):
@@ -34,5 +34,5 @@ def test_where_nothing_could_be_written(tmp_path):
 def test_commands_look_there_first(words, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "file").write_text("")
-    found = CliRunner().invoke(app, words)
+    found = invoke(app, words)
     assert found.exit_code == 2 and "cannot be written" in found.output, found.output

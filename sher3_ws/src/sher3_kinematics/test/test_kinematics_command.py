@@ -4,11 +4,9 @@ import json
 
 import numpy as np
 import pytest
+from invoking import invoke as run
 from sher3_kinematics import RobotKinematics
 from sher3_kinematics.cli import app
-from typer.testing import CliRunner
-
-run = CliRunner().invoke
 
 
 def test_fk_and_ik_undo_each_other() -> None:

@@ -4,6 +4,7 @@ import json
 from pathlib import Path
 
 import pytest
+from invoking import invoke as run
 from sher3_common import FileError
 from sher3_paper.cli import app
 from sher3_paper.comparison import Comparison, compare, within
@@ -12,9 +13,7 @@ from sher3_paper.report import html, markdown
 from sher3_paper.sections import SECTIONS, build
 from sher3_paper.sections.benchtop import benchtop
 from sher3_paper.tables import inconsistencies
-from typer.testing import CliRunner
 
-run = CliRunner().invoke
 FAST = ["geometry", "torsion", "design", "grasp"]
 
 

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from invoking import invoke
 from sher3_bags import Run, stream, write_run
 from sher3_description import load_robot
 from sher3_effects import plants, save_effects
@@ -20,7 +21,6 @@ from sher3_view import ViewError, film_of, write_page
 from sher3_view.cli import app
 from sher3_view.ghost import ghost_of
 from sher3_view.page import page
-from typer.testing import CliRunner
 
 START = 1_000_000_000
 STAMP = START + np.arange(0, 2_000_000_001, 2_000_000)
@@ -143,7 +143,7 @@ def test_nothing_to_show_is_an_error(tmp_path):
 
 def test_the_command_writes_the_page(tmp_path):
     write_run(tmp_path / "trial", made())
-    result = CliRunner().invoke(app, ["view", str(tmp_path / "trial"), "--json"])
+    result = invoke(app, ["view", str(tmp_path / "trial"), "--json"])
     facts = json.loads(result.stdout)
     assert facts["page"] == str(tmp_path / "trial.html") and facts["frames"] == 61
     assert (tmp_path / "trial.html").stat().st_size == facts["bytes"]
@@ -168,7 +168,7 @@ def test_the_simulator_is_a_ghost_that_shows_the_gap(tmp_path):
     write_run(tmp_path / "robot", simulate(robot, goal, np.zeros((1000, 6)), [backlash], seed=1))
     save_effects(tmp_path / "found.yaml", [backlash])
     arguments = ["view", str(tmp_path / "robot"), "--simulated", "nominal", "--exaggerate", "20"]
-    result = CliRunner().invoke(app, [*arguments, "--simulated", str(tmp_path / "found.yaml")])
+    result = invoke(app, [*arguments, "--simulated", str(tmp_path / "found.yaml")])
     assert result.exit_code == 0, result.output
     nominal, found = data_of((tmp_path / "robot.html").read_text())["ghosts"]
     assert (nominal["name"], found["name"]) == ("nominal simulator", "simulator with found.yaml")
@@ -178,13 +178,13 @@ def test_the_simulator_is_a_ghost_that_shows_the_gap(tmp_path):
 def test_analyze_writes_figures_picture_and_page(tmp_path):
     bag = write_run(tmp_path / "trial", made())
     arguments = ["analyze", str(bag), "--picture", str(tmp_path / "a.png"), "--html", str(tmp_path / "a.html")]
-    text = CliRunner().invoke(app, arguments)
+    text = invoke(app, arguments)
     assert text.exit_code == 0 and "times are median/99 %/max" in text.output
     assert (tmp_path / "a.png").is_file()
     written = (tmp_path / "a.html").read_text()
     assert "<th>latency [ms]</th>" in written and "data:image/png;base64" in written
     assert not re.search(r"https?:|\bhref=|@import|url\(|\bfetch\(", written)
-    assert json.loads(CliRunner().invoke(app, ["analyze", str(bag), "--json"]).output)["dropped"] == 0
+    assert json.loads(invoke(app, ["analyze", str(bag), "--json"]).output)["dropped"] == 0
 
 
 @pytest.mark.parametrize(
@@ -194,7 +194,7 @@ def test_analyze_writes_figures_picture_and_page(tmp_path):
 def test_analyze_fails_in_one_sentence(arguments, said, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     bag = write_run(tmp_path / "trial", made())
-    result = CliRunner().invoke(app, ["analyze", *(word.format(bag=bag) for word in arguments)])
+    result = invoke(app, ["analyze", *(word.format(bag=bag) for word in arguments)])
     assert result.exit_code == 2 and said in result.output
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import jinja2
 from matplotlib import rc_context
 
@@ -44,14 +46,20 @@ def render(
         in_memory: whether the case is in no folder: what goes on from here is a method of the answer.
         options: of the diagnosis, as in `command`.
     """
+    with rc_context(STYLE):
+        return _template().render(
+            found=_formula(found), **_sections(diagnosis, title, (case or title, folder, options), in_memory)
+        )
+
+
+@cache
+def _template() -> jinja2.Template:
+    """Return the page to be filled, compiled once."""
     loader = jinja2.PackageLoader("sher3_diagnosis", "report")
     environment = jinja2.Environment(loader=loader, autoescape=True, trim_blocks=True, lstrip_blocks=True)
     environment.globals |= {f.__name__: f for f in SAID}
     environment.filters["words"] = words
-    with rc_context(STYLE):
-        return environment.get_template(TEMPLATE).render(
-            found=_formula(found), **_sections(diagnosis, title, (case or title, folder, options), in_memory)
-        )
+    return environment.get_template(TEMPLATE)
 
 
 def percent(part: float | None) -> str:

@@ -112,10 +112,18 @@ def motor_residual(
     steps: bool = True,
     limit: Array | None = None,
 ) -> Residuals:
-    """Force that the nominal rigid axis does not explain: F - m a - viscous v - G(q) + tau_ext (positive: resists
-    forward).
+    """Return the force (g, 1) at each actuator that a nominal rigid axis does not explain, N or N m; positive resists.
 
-    Not without the echo: by how much the force stepped at each tick is what the demand tells.
+    F - m a - viscous v - G(q) + tau_ext. Without an echo there is none: by how much the force stepped at each tick is
+    what the demand tells.
+
+    Args:
+        run: its signals.
+        robot: as specified.
+        geometry: of its mechanism.
+        demand: velocity demands in force; default the echo.
+        steps: whether the force steps with each new command.
+        limit: (5,) force at which each drive ends, N or N m.
     """
     if run.effort is None or run.echo is None:
         return {}
