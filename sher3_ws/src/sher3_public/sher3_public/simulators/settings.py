@@ -77,8 +77,11 @@ def settings(model: Any, period: float) -> list[Setting]:
     ]
 
 
-def left(model: Any, trace: Played, setting: Setting) -> float:
-    """Return by how much a replay with a setting leaves the trace, rms over all positions, rad or m."""
+def makes(model: Any, trace: Played, setting: Setting, within: float) -> bool:
+    """Return whether a replay with a setting stays `within` (rad or m, rms over all positions) of the trace.
+
+    It ends where it has left the trace by more than the whole of it may.
+    """
     mujoco = import_module("mujoco")
     period = float(np.median(np.diff(trace.time)))
     changed = copy.copy(model)
@@ -89,12 +92,15 @@ def left(model: Any, trace: Played, setting: Setting) -> float:
     trace = replace(trace, control=trace.control[rows])
     state, steps = mujoco.MjData(changed), round(period / changed.opt.timestep)
     state.qpos[:], state.qvel[:] = trace.position[0], _speed(mujoco, changed, trace, period, steps)
-    went = np.empty_like(trace.position)
-    for k, control in enumerate(trace.control):
-        went[k], state.ctrl[:] = state.qpos, control
+    spare = within**2 * trace.position.size
+    for place, control in zip(trace.position, trace.control, strict=True):
+        away = state.qpos - place
+        spare -= away @ away
+        if not spare > 0.0:  # nor where the replay is no number any more
+            return False
+        state.ctrl[:] = control
         mujoco.mj_step(changed, state, steps)
-    away = float(np.sqrt(np.mean((went - trace.position) ** 2)))
-    return away if np.isfinite(away) else np.inf
+    return True
 
 
 def _speed(mujoco: Any, model: Any, trace: Played, period: float, steps: int) -> Array:
@@ -121,4 +127,4 @@ def setting_of(model: Any, first: Played, second: Played) -> tuple[str, str]:
 
 
 def _made(model: Any, trace: Played, period: float, apart: float) -> str:
-    return next((s.name for s in settings(model, period) if left(model, trace, s) < ALIKE * apart), "")
+    return next((s.name for s in settings(model, period) if makes(model, trace, s, ALIKE * apart)), "")
