@@ -25,6 +25,8 @@ from sher3_static.arm.urdf import SLIDES, TURNS
 
 PLACE = re.compile(r"(?P<before>.*?)(?P<axis>[xyz])(?P<behind>[_ ]?\d*)", re.IGNORECASE)
 """Name of one of three coordinates: `x1`, `tip_y`, `pos z`."""
+ENTRY = re.compile(r"(?P<before>.*?)(?P<row>[0-4])[_ ,]?(?P<column>[0-4])")
+"""Name of an entry of a pose as a matrix: `m_03`, `T14`."""
 NOISE = 1e-4
 """Noise of a measured position, m, that a draft states until somebody does: that of a good tracker in a hall."""
 FEWEST = 2
@@ -68,12 +70,21 @@ def draft_postures(path: Path, tables: Tables, model: Path) -> Draft | None:
 
 
 def points(columns: Mapping[str, Any]) -> dict[tuple[str, str], list[str]]:
-    """Return the names of the three coordinates of each point that has all of them."""
+    """Return the names of the three coordinates of each point, or of each pose that is written as a matrix (3, 4)."""
     found: dict[tuple[str, str], dict[str, str]] = {}
+    matrices: dict[str, dict[tuple[int, int], str]] = {}
     for name in columns:
-        if match := PLACE.fullmatch(bare_and_unit(bare(name))[0]):
+        known = bare_and_unit(bare(name))[0]
+        if match := PLACE.fullmatch(known):
             found.setdefault((match["before"], match["behind"]), {})[match["axis"].lower()] = name
-    return {key: [each[axis] for axis in "xyz"] for key, each in found.items() if len(each) == len("xyz")}
+        elif match := ENTRY.fullmatch(known):
+            matrices.setdefault(match["before"], {})[int(match["row"]), int(match["column"])] = name
+    out = {key: [each[axis] for axis in "xyz"] for key, each in found.items() if len(each) == len("xyz")}
+    for before, cells in matrices.items():
+        first = min(row for row, _ in cells)
+        if all((first + i, first + j) in cells for i in range(3) for j in range(4)):
+            out[before, "matrix"] = [cells[first + i, first + 3] for i in range(3)]
+    return out
 
 
 def numbered(columns: Mapping[str, Any], joints: Sequence[str]) -> dict[str, str]:

@@ -7,7 +7,7 @@ from sher3_common import parse_yaml
 from sher3_diagnosis import diagnose
 from sher3_machines import import_case, open_case
 from sher3_machines.drafting.drafts import draft_of
-from sher3_static.arm.draft import draft_postures
+from sher3_static.arm.draft import draft_postures, points
 
 AXES = {"pan": "z", "lift": "y", "elbow": "y", "roll": "z"}
 LENGTH = 0.4
@@ -63,6 +63,16 @@ def test_a_table_of_postures_is_drafted_and_its_zero_found(tmp_path, header, uni
     verdict = diagnose(*open_case(tmp_path / "case")).verdict
     offsets = {c.actuator: c.parameters["offset"].value for c in verdict.causes if c.effect == "encoder_offset"}
     assert offsets["lift_joint"] == pytest.approx(0.01, abs=1e-3)
+
+
+@pytest.mark.parametrize("entry", ["m_{}{}", "T{}{}", "pose_{}_{}", "r{},{}"])
+@pytest.mark.parametrize("first", [0, 1])
+def test_the_point_of_a_pose_that_is_a_matrix_is_its_last_column(entry, first):
+    names = [entry.format(first + i, first + j) for i in range(4) for j in range(4)]
+    columns = {name: np.arange(30.0) for name in ("q1", "q2", *names)}
+    assert list(points(columns).values()) == [names[3:12:4]]
+    del columns[names[5]]
+    assert not points(columns)
 
 
 @pytest.mark.parametrize(
