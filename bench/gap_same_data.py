@@ -17,7 +17,7 @@ import numpy as np
 from sher3_description import Robot, load_robot
 from sher3_diagnosis.flow import find
 from sher3_effects import plants
-from sher3_effects.simulated import to_effects
+from sher3_effects.effects_file import to_effects
 from sher3_gap.case.loading import signals_of
 from sher3_gap.evidence import SherEvidence
 from sher3_gap.excitation import excite

@@ -111,7 +111,9 @@ class Effect:
             place, "asked speed" that it is asked for a speed.
         seen_at: (stage, place) of the channels in which it must show to be looked for; "" is its own stage or its site.
         inputs: quantities the law may depend on, of `INPUTS`; none for an error that is constant.
-        gives: parameters by name: those that its shape has are the shape's, the others its coefficients in their order.
+        gives: parameters by name: those that its shape has are the shape's, the others its coefficients in their order,
+            of which a shape may have fewer.
+        tried: shapes to search over that are the same on every machine.
         units: parameter -> SI unit on a linear axis.
         bent_from: share of what a law with a bend explains that the one without must leave for the bend to be named.
         discrete: parameters that are a choice (a source, a member, a number of periods) and have no interval.
@@ -156,6 +158,7 @@ class Effect:
     seen_at: ClassVar[tuple[tuple[str, str], ...]] = (("", ""),)
     inputs: ClassVar[tuple[str, ...]] = ()
     gives: ClassVar[tuple[str, ...]] = ()
+    tried: ClassVar[Sequence[Shape]] = ({},)
     units: ClassVar[Mapping[str, str]] = {}
     bent_from: ClassVar[float] = RIVAL
     discrete: ClassVar[frozenset[str]] = frozenset()
@@ -194,8 +197,8 @@ class Effect:
         return tuple(Channel(stage or self.stage, place or site) for stage, place in self.seen_at)
 
     def shapes(self, views: Sequence[Any], site: str) -> list[Shape]:
-        """Return the shapes to search over; empty when the runs cannot show the effect. Default: one without values."""
-        return [{}]
+        """Return the shapes to search over; empty when the runs cannot show the effect; default those of `tried`."""
+        return [*self.tried]
 
     def plain_shapes(self, views: Sequence[Any], site: str) -> list[Shape]:
         """Return the shapes in which a plain law is fitted beside all others; default all of them."""
@@ -232,8 +235,9 @@ class Effect:
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
         """Return the parameters of coefficients (p,), SI units; default those it `gives`, else the shape's values."""
-        found = iter(coefficients)
-        return {name: shape[name] if name in shape else float(next(found)) for name in self.gives or shape}
+        names = [name for name in self.gives if name not in shape]
+        known = {**shape, **dict(zip(names, map(float, coefficients), strict=False))}
+        return {name: known[name] for name in self.gives or shape if name in known}
 
     def free(self) -> Effect | None:
         """Return the law with a coefficient for each number, where this one's are found beforehand; default None."""

@@ -11,28 +11,20 @@ from sher3_diagnosis.channel import Array
 class SensorView(Protocol):
     """Readings of one sensor, g of them."""
 
-    @property
-    def mass(self) -> float:
-        """Mass that hangs on the sensor as stated or identified, kg."""
-
-    @property
-    def gravity(self) -> Array:
-        """(g, 3) acceleration of gravity in the sensor's stated frame, m/s^2."""
-
-    @property
-    def elapsed(self) -> Array:
-        """(g,) share of the test that had passed, 0 to 1."""
-
-    @property
-    def warmth(self) -> Array:
-        """(g,) temperature above the first reading's, K; zero where it was not recorded."""
+    mass: float
+    """Mass that hangs on the sensor as stated or identified, kg."""
+    gravity: Array
+    """(g, 3) acceleration of gravity in the sensor's stated frame, m/s^2."""
+    elapsed: Array
+    """(g,) share of the test that had passed, 0 to 1."""
+    warmth: Array
+    """(g,) temperature above the first reading's, K; zero where it was not recorded."""
 
     def wrench(self, frame: int) -> Array:
         """Return (g, 6) nominal wrench as another frame of the list would give it, N and N m; 0 is the stated one."""
 
-    @property
-    def frames(self) -> int:
-        """Number of frames in the list."""
+    frames: int
+    """Number of frames in the list."""
 
     def turn(self, frame: int) -> Array:
         """Return (3,) rotation vector by which forces in a frame of the list fit the readings best, rad."""

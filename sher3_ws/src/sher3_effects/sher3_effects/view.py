@@ -77,9 +77,8 @@ class LawView(Protocol):
     run: Any
     """Signals of the run: see `sher3_effects.motion.FilteredRun`."""
 
-    @property
-    def stated(self) -> StatedLaw:
-        """The stated law on what was recorded."""
+    stated: StatedLaw
+    """The stated law on what was recorded."""
 
 
 class AxisView(Protocol):
@@ -210,9 +209,8 @@ class Postures(Protocol):
 class ArmView(Protocol):
     """Postures of a serial arm as the measuring system sees them."""
 
-    @property
-    def postures(self) -> Postures:
-        """The nominal joint frames."""
+    postures: Postures
+    """The nominal joint frames."""
 
     def row(self, site: str) -> int:
         """Return the number of a joint, from 0 at the base."""

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from sher3_effects.compliance.stiffening import softness, stiffened
 from sher3_effects.compliance.two_slopes import is_shown, knees, parts, slopes
-from sher3_effects.periodic.teeth import orders_of
+from sher3_effects.periodic.phase import orders_of
 from sher3_effects.scale.varying_ratio import gentle, lines, mean_ratio
 
 

@@ -29,15 +29,13 @@ class LinkCompliance(Page):
     gives = ("a", "own_weight")
     units = {"a": "m/N^b", "own_weight": "1"}
     discrete = frozenset({"own_weight"})
+    tried = ({"own_weight": 0.0}, {"own_weight": 1.0})
+    """Whether the links carry the weight of the platform (1) or that is calibrated away (0)."""
     explanation = (
         "The six links of the delta and their joints give way under the load on the tip, relatively more at "
         "small forces than at large ones."
     )
     siblings = {"structural_compliance": "in proportion to the force"}
-
-    def shapes(self, views: Sequence[RobotView], site: str) -> list[Shape]:
-        """Whether the links carry the weight of the platform (1) or that is calibrated away (0)."""
-        return [{"own_weight": 0.0}, {"own_weight": 1.0}]
 
     def signature(self, view: RobotView, site: str, shape: Shape) -> Signature:
         """One column: the deflection of the tip by the paper's law."""

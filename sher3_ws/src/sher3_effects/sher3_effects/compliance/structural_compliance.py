@@ -39,12 +39,10 @@ class StructuralCompliance(Page):
     }
     units = {"x": "m/N", "y": "rad/(N*m)", "z": "rad/(N*m)", "stiffens": "N"}
     finer = FINER
+    tried = ({"free": 0.0}, {"free": 1.0})
+    """The paper's ratios, or three free springs."""
     LUMPED = (_ARM.along_x, 1.0 / _ARM.pitch, 1.0 / _ARM.yaw)
     """Along x, about y, about z, of the deflection table less the delta's own share [m/N, rad/(N m), rad/(N m)]."""
-
-    def shapes(self, views: Sequence[RobotView], site: str) -> list[Shape]:
-        """The paper's ratios, or three free springs."""
-        return [{"free": 0.0}, {"free": 1.0}]
 
     def bends(self, views: Sequence[RobotView], site: str, shape: Shape) -> list[Shape]:
         """Return the shape with each force at which the compliance of an arm that stiffens is halved."""

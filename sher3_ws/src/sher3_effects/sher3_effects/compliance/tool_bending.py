@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.effect import Best, Shape, Signature
 from sher3_sim.effect import PlantEffect, parameter
 from sher3_sim.parameters import PlantParameters
@@ -25,6 +25,7 @@ class ToolBending(Page):
     above = 0.0
     best = Best("loads", "known loads in several postures separate springs")
     places = ("tip",)
+    gives = ("compliance", "slope", "stiffens")
     explanation = (
         "A force across the tool bends it: the tip moves across the tool's axis, in proportion, whatever the "
         "pose; a force along the tool does nothing."
@@ -47,10 +48,6 @@ class ToolBending(Page):
         columns = np.zeros((len(force), 6, 2))
         columns[:, :3, 0], columns[:, 3:, 1] = across, np.cross(-axis, across)
         return Signature({Channel("structure", "tip"): columns * softness(across, shape)})
-
-    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Return compliance across the tool and slope per force, (2,) [m/N, rad/N]; the force that halves them."""
-        return {"compliance": float(coefficients[0]), "slope": float(coefficients[1]), **shape}
 
 
 @dataclass(frozen=True)

@@ -213,12 +213,9 @@ class ComplianceOfJoint(TransmissionCompliance):
     """The same on a joint of a serial arm with a second encoder at its link: the force is what the link needs."""
 
     kinds = ("joint",)
+    shapes = Page.shapes  # the rigid bodies tell the force
     units = SLOPES
     bent_from = BENT_FROM
-
-    def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
-        """Return one shape: the rigid bodies tell the force."""
-        return [{}]
 
     def bends(self, views: Sequence[AxisView], site: str, shape: Shape) -> list[Shape]:
         """Return forces at which the spring has a knee."""

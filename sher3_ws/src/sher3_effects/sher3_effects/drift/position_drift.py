@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import ClassVar
 
 import numpy as np
-from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.effect import Best, Shape, Signature, column
 
 from sher3_effects.page import Page
@@ -19,6 +19,7 @@ class PositionDrift(Page):
     id, family, stage = "position_drift", "drift", "transmission"
     kinds, places = ("table",), ("axis",)
     inputs = ("time",)
+    gives = ("over_test", "settling")
     units = {"over_test": "m", "settling": "1"}
     best = Best("postures", "the same targets again and again separate drift from the map of the axis")
     explanation = "Every cycle stops a little further along than the one before: the machine or the set-up warms up."
@@ -38,7 +39,3 @@ class PositionDrift(Page):
             return Signature({Channel(self.stage, site): column(view.elapsed)})
         passed = np.expm1(-view.elapsed / shape["settling"]) / np.expm1(-1.0 / shape["settling"])
         return Signature({Channel(self.stage, site): column(passed)})
-
-    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Return the drift (1,) from the first row to the last, and the share of the test in which it settles."""
-        return {"over_test": float(coefficients[0]), **shape}

@@ -9,7 +9,6 @@ from typing import ClassVar
 
 import numpy as np
 from sher3_description import Robot
-from sher3_diagnosis.channel import Array
 from sher3_diagnosis.effect import Best, Shape, Signature
 from sher3_sim.effect import PlantEffect
 from sher3_sim.parameters import PlantParameters
@@ -27,6 +26,9 @@ class LinkLengthError(Page):
     seen_at = TIP_POSE
     best = Best("postures", "well-spread postures separate geometric errors")
     places = ("leg",)
+    gives = ("length", "difference")
+    tried = ({"apart": 0.0}, {"apart": 1.0})
+    """Both links alike (0), or one longer than the other too (1), by twice the `difference`: it turns the platform."""
     explanation = (
         "One leg of the delta is a little too long or short: the tip is off by an amount that changes "
         "smoothly with the pose."
@@ -37,10 +39,6 @@ class LinkLengthError(Page):
         "tool_offset": "turns with the tool",
     }
     units = {"length": "m"}
-
-    def shapes(self, views: Sequence[RobotView], site: str) -> list[Shape]:
-        """Both links alike (0), or one longer than the other as well (1), which turns the platform."""
-        return [{"apart": 0.0}, {"apart": 1.0}]
 
     def signature(self, view: RobotView, site: str, shape: Shape) -> Signature:
         """Both links of the leg alike, and, apart, one against the other."""
@@ -56,16 +54,13 @@ class LinkLengthError(Page):
         names = (f"link length of {site}", f"difference of the links of {site}")
         return (Tolerated({"apart": 1.0}, dict.fromkeys(names, limit)),)
 
-    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Return the mean length error of the two links and half their difference [m], coefficients (1,) or (2,)."""
-        return {n: float(c) for n, c in zip(("length", "difference"), coefficients, strict=False)}
-
 
 class JointPlace(Page):
     """A joint that sits elsewhere than drawn, shifted along the axes of its own frame."""
 
     id, family, stage, best = LinkLengthError.id, LinkLengthError.family, LinkLengthError.stage, LinkLengthError.best
     kinds, places = ("arm",), ("joint",)
+    gives = ("x", "y", "z")
     leaves_out = "small errors of the other joints"
     explanation = "One link of the arm is longer, shorter or bent: a joint sits elsewhere than drawn."
     siblings = {"encoder_offset": "a turn about the joint's axis", "rail_tilt": "a turn across the joint's axis"}
@@ -81,10 +76,6 @@ class JointPlace(Page):
         frame = view.postures.frames[:, view.row(site)]
         parts = [view.shifted(frame[:, :3, i]) for i in range(3)]
         return Signature({self.channels(site)[0]: np.stack(parts, axis=-1)})
-
-    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Return the shifts (3,) [m] along the axes of the joint frame."""
-        return dict(zip("xyz", map(float, coefficients), strict=True))
 
     def unit(self, name: str, site: str, rotary: bool) -> str:
         """Return the unit of a length: the shifts of a joint are none of its turn."""

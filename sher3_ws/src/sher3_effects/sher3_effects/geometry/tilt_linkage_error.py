@@ -8,7 +8,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from sher3_description import Robot
-from sher3_diagnosis.channel import Array
 from sher3_diagnosis.effect import Best, Shape, Signature
 from sher3_sim.effect import PlantEffect
 from sher3_sim.parameters import PlantParameters
@@ -27,6 +26,7 @@ class TiltLinkageError(Page):
     seen_at = TIP_POSE
     best = Best("postures", "well-spread postures separate geometric errors")
     places = ("tilt",)
+    gives = ("length", "member", "drawn_zero")
     explanation = (
         "The tilt angle is not the one its slider should give: the tip turns too far or not far enough, by an "
         "amount that depends on the tilt."
@@ -37,13 +37,8 @@ class TiltLinkageError(Page):
     }
     units = {"length": "m", "member": "1"}
     MEMBERS = ("crank", "coupler", "offset")
-
-    def shapes(self, views: Sequence[RobotView], site: str) -> list[Shape]:
-        """Which member (0 crank, 1 coupler, 2 offset), and where the slider's zero is.
-
-        With `drawn_zero` 0 the axis was homed at zero tilt of the linkage as built, with 1 where the drawing has it.
-        """
-        return [{"member": float(i), "drawn_zero": z} for i in range(len(self.MEMBERS)) for z in (0.0, 1.0)]
+    tried = tuple({"member": float(i), "drawn_zero": z} for i in range(3) for z in (0.0, 1.0))
+    """Which member, and whether the slider has its zero where the linkage has no tilt, as built (0) or as drawn (1)."""
 
     def signature(self, view: RobotView, site: str, shape: Shape) -> Signature:
         """One column: the change of the pose per metre."""
@@ -61,10 +56,6 @@ class TiltLinkageError(Page):
             Tolerated({"member": float(i), "drawn_zero": 0.0}, {f"{member} of the tilt linkage": limit})
             for i, member in enumerate(self.MEMBERS)
         ]
-
-    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Return the length error (1,) [m] and the member it is of."""
-        return {"length": float(coefficients[0]), **shape}
 
     def to_simulator(self, actuator: str, values: Values, robot: Robot) -> list[Part]:
         """Return the member's error, beside an encoder offset where the axis has its own zero: the plant's is drawn."""

@@ -15,7 +15,6 @@ from sher3_sim.effect import PlantEffect, parameter
 from sher3_sim.parameters import PlantParameters
 
 from sher3_effects.compliance.two_slopes import BENT_FROM
-from sher3_effects.inertia.carried import carried_mass
 from sher3_effects.page import Page, Part, Tolerated, Values
 from sher3_effects.view import AxisView
 
@@ -151,3 +150,9 @@ class GravityLoadInPlant(PlantEffect, page=GravityLoad, sites=(*ACTUATORS, "all"
         """Scale the axis's own gravity."""
         for row in self.rows:
             p.axis["gravity_scale"][row] += self.mass / carried_mass(p.robot, row)
+
+
+def carried_mass(robot: Robot, row: int) -> float:
+    """Return the nominal mass (kg) whose weight an axis carries."""
+    arm = robot.arm
+    return (robot.delta.moving_mass if row < 3 else arm.tilt_mass + (arm.roll_mass if row == 3 else 0.0)) or 1.0

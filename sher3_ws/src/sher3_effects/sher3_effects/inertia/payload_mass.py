@@ -14,7 +14,7 @@ from sher3_diagnosis.effect import Best, Shape, Signature, column
 from sher3_sim.effect import PlantEffect, parameter
 from sher3_sim.parameters import PlantParameters
 
-from sher3_effects.inertia.carried import carried_mass
+from sher3_effects.inertia.gravity_load import carried_mass
 from sher3_effects.page import Page, Tolerated
 from sher3_effects.view import ArmMotionView, AxisView, RobotView
 
@@ -106,6 +106,7 @@ class PayloadOnLink(PayloadMass):
     """
 
     kinds, places = ("joint",), ("link",)
+    shapes = Page.shapes
     plain = True
     about = ("x", "y", "z")
     on_axis = {"mass": "payload", "x": "payload_x", "y": "payload_y", "z": "payload_z"}
@@ -121,10 +122,6 @@ class PayloadOnLink(PayloadMass):
     def channels(self, site: str) -> tuple[Channel, ...]:
         """Return the link: which joints carry it only the view knows."""
         return (Channel(self.stage, site),)
-
-    def shapes(self, views: Sequence[Any], site: str) -> list[Shape]:
-        """Return a payload at the joint of its link, from which the search for its centre starts."""
-        return [{}]
 
     def signature(self, view: Any, site: str, shape: Shape) -> Signature:
         """Return four columns on every joint: per kg, and per kg m along x, y and z of the link's joint."""

@@ -114,6 +114,8 @@ class BacklashOnAxis(Backlash):
     """The same on one axis of any machine, where something else may make most of the encoders' difference."""
 
     kinds: ClassVar[tuple[str, ...]] = ("axis", "servo")
+    gives = ("width",)
+    parameters = Page.parameters
     units: ClassVar[Mapping[str, str]] = {}
     plain = True
     amount = "width"
@@ -165,10 +167,6 @@ class BacklashOnAxis(Backlash):
         start = self.start(view, site, shape["width"])
         lag = flight(np.ascontiguousarray(run.smooth[:, axis]), shape["width"], shape["braking"], run.period, start)
         return Signature({}, {Channel(self.stage, site): run.to_grid(lag)[:, None]})
-
-    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Return the width of the gap, of the shape; where a known force tells the flank, coefficients (1,)."""
-        return {"width": float(coefficients[0]) if "soft" in shape else shape["width"]}
 
     def start(self, view: AxisView, site: str, width: float) -> float:
         """Return where the load begins, by the samples at which the motor has hardly moved: its zero is free."""
@@ -250,16 +248,13 @@ class CircleReversal(TableReversal):
     """Reversal error of one of two axes that move on a circle: a step at the poles where that axis turns round."""
 
     kinds, places = ("circle",), ("axis",)
+    shapes = Page.shapes
     explanation = "One axis lags behind after it turns round: the circle has a step on both of its poles."
     siblings = {"transmission_ripple": "a wave over the whole circle, not a step"}
 
     def channels(self, site: str) -> tuple[Channel, ...]:
         """Return the radius of the plane."""
         return (Channel("mechanism", site.partition(".")[0]),)
-
-    def shapes(self, views: Sequence[Any], site: str) -> list[Shape]:
-        """Return one shape: a circle turns both axes round."""
-        return [{}]
 
     def signature(self, view: Any, site: str, shape: Shape) -> Signature:
         """Return one column: what half a width, against the motion of an axis of a `CircleView`, does to the radius."""

@@ -12,8 +12,7 @@ from sher3_diagnosis.effect import Best, Shape, Signature, column
 from sher3_sim.effect import PlantEffect, parameter, set_to
 
 from sher3_effects.page import Page
-from sher3_effects.periodic.phase import phase_at_zero, sine_of
-from sher3_effects.periodic.teeth import orders_of
+from sher3_effects.periodic.phase import orders_of, phase_at_zero, sine_of
 from sher3_effects.view import ArmMotionView, AxisView
 
 
@@ -33,11 +32,8 @@ class Cogging(Page):
         "position_friction": "the sign follows the direction of motion",
         "transmission_ripple": "the load moves, no force is needed",
     }
-    ORDERS = (1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 14, 16, 18, 20, 22, 24)
-
-    def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
-        """Return numbers of periods per motor revolution."""
-        return [{"periods_per_rev": float(n)} for n in self.ORDERS]
+    tried = tuple({"periods_per_rev": float(n)} for n in (*range(1, 12), *range(12, 25, 2)))
+    """Periods per motor revolution."""
 
     def bends(self, views: Sequence[AxisView], site: str, shape: Shape) -> list[Shape]:
         """Return a motor of the same number of teeth, of which no two are alike: orders beside it show too."""

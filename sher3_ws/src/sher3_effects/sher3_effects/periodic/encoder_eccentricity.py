@@ -20,6 +20,8 @@ class EncoderEccentricity(Page):
 
     id, family, stage = "encoder_eccentricity", "periodic", "sensing"
     inputs = ("position",)
+    tried = ({"side": 0.0}, {"side": 2.0})
+    """Once per lead, alone (0) or with a second harmonic (2)."""
     seen_at = (("transmission", ""),)
     breaks = "load_encoder"
     best = Best("sweep", "constant speeds over several revolutions separate periods")
@@ -27,13 +29,9 @@ class EncoderEccentricity(Page):
     explanation = "The load encoder's reading swings once per lead while the load, and the tip, run smoothly."
     siblings = {"transmission_ripple": "the load itself moves, and the tip with it"}
 
-    def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
-        """Once per lead, alone (0) or with a second harmonic (2)."""
-        return [{"side": 0.0}, {"side": 2.0}]
-
     def _waves(self, view: AxisView, site: str, shape: Shape) -> Array:
         """Quadratures at every tick, (n, p)."""
-        turn = 2.0 * np.pi * view.run.smooth[:, view.row(site)] / view.lead(site)
+        turn = 2.0 * np.pi * view.run.smooth[:, view.row(site)] / shape.get("turn", view.lead(site))
         orders = (1.0, shape["side"]) if shape["side"] else (1.0,)
         return np.stack([f(n * turn) for n in orders for f in (np.sin, np.cos)], axis=-1)
 
@@ -76,12 +74,6 @@ class EccentricityOnAxis(EncoderEccentricity):
         if axes[0].rotary and max(a.travel for a in axes) > self.TURNS * 2.0 * np.pi:
             found += [{"side": s, "turn": 2.0 * np.pi} for s in (0.0, 2.0)]
         return found
-
-    def _waves(self, view: AxisView, site: str, shape: Shape) -> Array:
-        """Quadratures at every tick, (n, p)."""
-        turn = 2.0 * np.pi * view.run.smooth[:, view.row(site)] / shape.get("turn", view.lead(site))
-        orders = (1.0, shape["side"]) if shape["side"] else (1.0,)
-        return np.stack([f(n * turn) for n in orders for f in (np.sin, np.cos)], axis=-1)
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
         """Return amplitude and phase [rad], of the first two of (p,), and the turn where the load's turn counts."""

@@ -1,4 +1,4 @@
-"""Amplitude and phase of a periodic error."""
+"""Amplitude, phase and orders of a periodic error."""
 
 from __future__ import annotations
 
@@ -20,3 +20,15 @@ def sine_of(shape: Shape, coefficients: Array, order: str = "periods_per_rev") -
     sine, cosine = float(coefficients[0]), float(coefficients[1])
     amplitude, phase = float(np.hypot(sine, cosine)), float(np.arctan2(cosine, sine))
     return {"amplitude": amplitude, order: shape[order], "phase": phase}
+
+
+def orders_of(shape: Shape) -> list[float]:
+    """Return the orders of a shape, its number of teeth first.
+
+    Teeth that differ over a revolution are a sine whose amplitude goes round, once where the wheel is off its centre,
+    twice where it is oval and three times where it sits on three screws: neighbours up to three off show. The shape of
+    one tooth is a second and third harmonic.
+    """
+    n = shape["periods_per_rev"]
+    beside = (n - 1.0, n + 1.0, n - 2.0, n + 2.0, n - 3.0, n + 3.0, 2.0 * n, 3.0 * n) if shape.get("unlike") else ()
+    return list(dict.fromkeys([n, *(k for k in beside if k > 0.0)]))

@@ -13,8 +13,7 @@ from sher3_diagnosis.effect import Best, Shape, Signature, column
 from sher3_sim.effect import PlantEffect, parameter, set_to
 
 from sher3_effects.page import Page, Tolerated
-from sher3_effects.periodic.phase import phase_at_zero, sine_of
-from sher3_effects.periodic.teeth import orders_of
+from sher3_effects.periodic.phase import orders_of, phase_at_zero, sine_of
 from sher3_effects.table_view import TableView
 from sher3_effects.view import AxisView
 
@@ -37,11 +36,8 @@ class TransmissionRipple(Page):
         "encoder_eccentricity": "only the reading swings, the tip does not",
         "cogging": "a force, not a displacement",
     }
-    ORDERS = (1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 12, 14, 16, 18, 20)
-
-    def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
-        """Return numbers of periods per lead."""
-        return [{"periods_per_rev": float(n), "side": 0.0} for n in self.ORDERS]
+    tried = tuple({"periods_per_rev": float(n), "side": 0.0} for n in (*range(1, 10), *range(10, 21, 2)))
+    """Periods per lead."""
 
     def refine(self, shape: Shape) -> list[Shape]:
         """Add a second order: the first, a neighbour (side-band), or a harmonic; and then a third."""
@@ -119,26 +115,18 @@ class TableRipple(Page):
     id, family, stage = TransmissionRipple.id, TransmissionRipple.family, TransmissionRipple.stage
     best, explanation = TransmissionRipple.best, TransmissionRipple.explanation
     kinds, needs, inputs = ("table",), ("lead",), ("position",)
+    parameters = TransmissionRipple.parameters
     discrete = frozenset({"periods_per_rev"})
     units = {"amplitude": "m"}
     siblings = {"lead_error": "in proportion to the travel, no wave"}
-    ORDERS = (1, 2, 4)
+    tried = tuple({"periods_per_rev": float(n)} for n in (1, 2, 4))
     """Periods per lead that targets, a few to the lead at best, can show."""
-
-    def shapes(self, views: Sequence[Any], site: str) -> list[Shape]:
-        """Return periods per lead."""
-        return [{"periods_per_rev": float(n)} for n in self.ORDERS]
 
     def signature(self, view: TableView, site: str, shape: Shape) -> Signature:
         """Return two columns: the quadratures of a wave over the target."""
         assert view.lead is not None
         turn = 2.0 * np.pi * shape["periods_per_rev"] * view.target / view.lead
         return Signature({Channel(self.stage, site): column(np.sin(turn), np.cos(turn))})
-
-    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Return amplitude, order and phase [rad], of coefficients (2,)."""
-        amplitude, phase = np.hypot(*coefficients), np.arctan2(coefficients[1], coefficients[0])
-        return {"amplitude": float(amplitude), "phase": float(phase), "periods_per_rev": shape["periods_per_rev"]}
 
 
 @dataclass(frozen=True)

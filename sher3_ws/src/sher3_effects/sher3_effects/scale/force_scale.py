@@ -34,14 +34,12 @@ class ForceScale(Page):
     places = ("force_sensor",)
     discrete = frozenset({"axis"})
     choices = {"axis": {-1.0: "all", -2.0: "forces", **{float(i): name for i, name in enumerate(COMPONENTS)}}}
+    tried = tuple({"axis": float(a)} for a in (-1, -2, 0, 1, 2))
+    """Forces and moments (-1), forces only (-2), one component of the force."""
     explanation = (
         "The force sensor's reading is off by a constant ratio: nothing without load, more the larger the load."
     )
     siblings = {"force_crosstalk": "a load on one axis shows on another", "force_bias": "does not depend on the load"}
-
-    def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
-        """Forces and moments (-1), forces only (-2), one component (0..5)."""
-        return [{"axis": float(a)} for a in (-1, -2, 0, 1, 2)]
 
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
         """One column: the nominal reading of the components concerned."""

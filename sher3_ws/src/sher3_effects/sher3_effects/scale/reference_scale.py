@@ -21,6 +21,7 @@ class ReferenceScale(Page):
     id, family, stage = "reference_scale", "scale", "motor_mechanics"
     kinds, needs, plain = ("servo",), ("asked speed",), True
     inputs = ("command",)
+    gives = ("relative",)
     best = Best("steps", "several speeds, in both directions, separate a share from a limit and from friction")
     explanation = (
         "The axis goes too fast or too slowly by one share of what it is asked: counts of another turn, a gear that "
@@ -49,7 +50,3 @@ class ReferenceScale(Page):
     def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
         """Return one shape without a choice, where a reference was recorded."""
         return [{}] if all(v.run.reference is not None for v in views) else []
-
-    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Return the share (1,) by which it goes further or faster than asked."""
-        return {"relative": float(coefficients[0])}

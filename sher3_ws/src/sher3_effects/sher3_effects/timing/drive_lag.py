@@ -25,7 +25,7 @@ class DriveLag(Page):
 
     id, family, stage = "drive_lag", "timing", "drive"
     inputs = ("command", "force")
-    gives = ("time_constant",)
+    gives: ClassVar[tuple[str, ...]] = ("time_constant",)
     best = Best("steps", "steps of several amplitudes show a dead time as an onset and a lag as a slope")
     leaves_out = "how its current loop rings"
     explanation = (

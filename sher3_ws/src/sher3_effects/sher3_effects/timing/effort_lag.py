@@ -25,6 +25,7 @@ class EffortLag(DriveLag):
     kinds, needs = ("axis",), ("drive",)
     seen_at = (("motor_mechanics", ""),)
     plain = after_effort = True
+    gives = ()
     on_axis = {"time_constant": "lag", "delay": "delay"}
     leaves_out = "what lies between drive and axis beside a lag"
     explanation = "The force on the axis follows what was recorded of its drive late, like a filter or a dead time."
@@ -56,10 +57,6 @@ class EffortLag(DriveLag):
         least = max(self.LEAST * period, self.UNSEEN / bandwidth)
         count = int(np.log(LONGEST_DELAY / least) / np.log(self.STEP)) + 1 if least < LONGEST_DELAY else 0
         return [float(least * self.STEP**k) for k in range(count)]
-
-    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Return the time constant, or the dead time [s], of the shape; coefficients (p,) tell neither."""
-        return dict(shape)
 
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
         """Return the recorded effort less the effort that acts, and the force on the mass."""

@@ -27,15 +27,14 @@ class ToolGravity(Page):
     breaks = "force_sensor"
     best = Best("loads", "known loads in several orientations separate bias, weight and cross-talk")
     places = ("force_sensor",)
+    gives = ("mass", "com_x", "com_y", "com_z")
+    tried = ({"free_com": 0.0}, {"free_com": 1.0})
+    """At the nominal centre of mass, or with a first moment of its own."""
     explanation = (
         "What the sensor reads of the tool's weight is off: the error turns with roll and tilt exactly as gravity does."
     )
     siblings = {"force_bias": "does not turn", "cable_drag": "turns, but lags behind the motion"}
     units = {"com_x": "kg*m", "com_y": "kg*m", "com_z": "kg*m"}
-
-    def shapes(self, views: Sequence[RobotView], site: str) -> list[Shape]:
-        """At the nominal centre of mass, or with a first moment of its own."""
-        return [{"free_com": 0.0}, {"free_com": 1.0}]
 
     def signature(self, view: RobotView, site: str, shape: Shape) -> Signature:
         """Weight per kilogram; with a free centre also the first moment."""
@@ -51,11 +50,6 @@ class ToolGravity(Page):
         """Return the mass of the tool."""
         return (Tolerated({"free_com": 0.0}, {"tool mass": (robot.tolerances.tool_mass, "kg")}),)
 
-    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Return the extra mass [kg], (1,); with a free centre, (4,), the extra first moment [kg m] too."""
-        names = ("mass", "com_x", "com_y", "com_z")[: len(coefficients)]
-        return {n: float(c) for n, c in zip(names, coefficients, strict=True)}
-
     def to_simulator(self, actuator: str, values: Values, robot: Robot) -> list[Part]:
         """Return the first moment beyond that of the mass as a shift of the centre of mass."""
         mass = robot.force_sensor.tool_mass + values["mass"]
@@ -68,6 +62,7 @@ class SensorLoad(Page):
 
     id, family, stage, best = ToolGravity.id, ToolGravity.family, ToolGravity.stage, ToolGravity.best
     kinds, places, needs = ("sensor",), ToolGravity.places, ("orientation",)
+    gives = ToolGravity.gives
     inputs, explanation = ToolGravity.inputs, "What hangs on the sensor weighs more, or elsewhere, than stated."
     siblings = {"force_bias": "does not turn", "force_scale": "in proportion to everything the sensor reads"}
     units = {"mass": "kg", **ToolGravity.units}
@@ -86,10 +81,6 @@ class SensorLoad(Page):
         columns[:, :3, 0] = view.gravity
         columns[:, 3:, 1:] = -skew(view.gravity)
         return Signature({Channel(self.stage, site): columns})
-
-    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Return the extra mass [kg] and its extra first moment [kg m], coefficients (4,)."""
-        return dict(zip(("mass", "com_x", "com_y", "com_z"), map(float, coefficients), strict=True))
 
     def in_words(self, view: SensorView, values: Mapping[str, float]) -> str:
         """Return the load as it was found."""
