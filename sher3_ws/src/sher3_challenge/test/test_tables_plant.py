@@ -12,10 +12,9 @@ from sher3_challenge.plants.plant import Climate, RunPlan
 from sher3_challenge.plants.registry import truth_plant
 from sher3_challenge.plants.tables.curves import RING, loop_slope, ring, teeth
 from sher3_challenge.plants.tables.mechanism import ROOM, load_forces, tip_path
+from sher3_challenge.plants.tables.plant import LAG, Transport, temperatures
 from sher3_challenge.plants.tables.robot import nominal
 from sher3_challenge.plants.tables.tip import follow, turned_over
-from sher3_challenge.plants.tables.transport import Transport
-from sher3_challenge.plants.tables.warmth import LAG, temperatures
 from sher3_description import load_robot
 from sher3_gap.excitation import excite
 

@@ -1,4 +1,8 @@
-"""The tables plant ready to run: one robot as built, its faults, and its runs, recorded or ideal."""
+"""The tables plant ready to run: one robot as built, its faults, and its runs, recorded or ideal.
+
+Commands have delays that waver, lateness from an empirical distribution, and losses in bursts. The room warms with two
+time constants, and the body of the robot lags behind the room.
+"""
 
 from __future__ import annotations
 
@@ -12,15 +16,51 @@ from sher3_description.contract import REFERENCE_TEMPERATURE
 
 from sher3_challenge.plants.arrays import copied
 from sher3_challenge.plants.grammar import NOTHING, Foreign
-from sher3_challenge.plants.plant import AXES, Array, Plant, RunPlan
+from sher3_challenge.plants.plant import AXES, Array, Climate, Plant, RunPlan
 from sher3_challenge.plants.recorder import Signals, recorded
 from sher3_challenge.plants.tables.loop import Script, run_loop
 from sher3_challenge.plants.tables.parameters import TableParameters
 from sher3_challenge.plants.tables.robot import bend, individual, nominal, scatter
 from sher3_challenge.plants.tables.sensing import force_reading
 from sher3_challenge.plants.tables.tip import tip_of
-from sher3_challenge.plants.tables.transport import Transport
-from sher3_challenge.plants.tables.warmth import temperatures
+
+LATENESS = np.interp(np.linspace(0, 1, 65), [0, 0.1, 0.5, 0.8, 0.95, 1], [0.0, 0.25, 0.75, 1.2, 2.0, 3.6])
+"""Quantiles of a command's lateness over its scale, as measured on a busy bus: never quite none, with a long tail."""
+LATENESS /= np.sqrt(np.mean(np.interp(np.linspace(0, 1, 4001), np.linspace(0, 1, 65), LATENESS) ** 2))
+WAVER = 0.02
+"""Share by which a constant delay wavers slowly."""
+BURST = 1.6
+"""Mean number of commands lost in a row."""
+FAST_SHARE, FAST = 0.2, 0.2
+"""Share of the rise that comes fast, and its time constant over the climate's own."""
+LAG = 15.0
+"""Time by which the body lags behind the room [s], against some 260 s of a case."""
+
+
+@dataclass
+class Transport:
+    """Delay per axis [s], rms of a random lateness [s], share of commands that are lost."""
+
+    delay: Array = field(default_factory=lambda: np.zeros(AXES))
+    lateness: float = 0.0
+    loss: float = 0.0
+
+    def arrivals(self, ticks: int, period: float, rng: np.random.Generator) -> Array:
+        """Return (ticks, 5) times of arrival [s] from the start, inf where a command is lost; none overtakes."""
+        tick = np.arange(ticks)
+        drawn = np.interp(rng.random(ticks), np.linspace(0, 1, len(LATENESS)), LATENESS)
+        slow = 1 + WAVER * np.sin(2 * np.pi * (tick * period * 0.7 + rng.random()))
+        late = np.minimum(self.lateness * drawn, 5 * period)
+        arrival = (tick * period)[:, None] + late[:, None] + slow[:, None] * self.delay
+        arrival = np.maximum.accumulate(arrival, axis=0)
+        lost = np.zeros(ticks, dtype=bool)
+        if self.loss > 0.0:
+            begins = rng.random(ticks) < self.loss / BURST
+            for start in np.flatnonzero(begins):
+                lost[start : start + rng.geometric(1 / BURST)] = True
+        lost[0] = False
+        arrival[lost] = np.inf
+        return np.asarray(arrival)
 
 
 @dataclass
@@ -77,3 +117,15 @@ class TablesPlant(Plant):
             room,
         )  # fmt: skip
         return recorded(self.robot, plan, signals, rng, tracker=self.tracker or ideal, ideal=ideal)
+
+
+def temperatures(climate: Climate, stamp: int, time: Array) -> tuple[Array, Array]:
+    """Return what thermometer and body have, (n,) each [degC], over a run's own time, which starts at `stamp` [ns]."""
+    since = np.maximum(0.0, (stamp - climate.origin) * 1e-9 + time)
+    room, body = np.full(len(time), climate.start), np.full(len(time), climate.start)
+    for share, constant in ((1 - FAST_SHARE, climate.constant), (FAST_SHARE, FAST * climate.constant)):
+        slow = np.exp(-since / constant)
+        room += climate.rise * share * (1 - slow)
+        lagged = (constant * slow - LAG * np.exp(-since / LAG)) / (constant - LAG)
+        body += climate.rise * share * (1 - lagged)
+    return room, body

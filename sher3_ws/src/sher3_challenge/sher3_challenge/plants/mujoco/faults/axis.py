@@ -1,14 +1,15 @@
-"""Faults of motor mechanics and transmission: bodies, springs, tendons and friction on an axis."""
+"""Faults of an axis: host, transport, drive and encoders; bodies, springs, tendons and friction on it."""
 
 from __future__ import annotations
 
 import math
 import operator
+from dataclasses import replace
 
 from sher3_challenge.plants.declared import DELTAS
-from sher3_challenge.plants.kinds import Catalogue, scaled_by
+from sher3_challenge.plants.kinds import Catalogue, scaled_by, set_to
 from sher3_challenge.plants.mujoco.axes.laws import Film, Grease, Guide, Poles
-from sher3_challenge.plants.mujoco.axes.parts import ELEMENTS, Axis, Bristle
+from sher3_challenge.plants.mujoco.axes.parts import ELEMENTS, Axis, Bristle, Drive
 from sher3_challenge.plants.mujoco.axes.wheels import Eccentric
 from sher3_challenge.plants.mujoco.rig import Rig
 from sher3_challenge.plants.site import Site
@@ -18,12 +19,17 @@ known = CATALOGUE.known
 
 CATALOGUE.changes(
     operator.add,
+    command_delay="host.delay",
+    axis_skew="host.delay",
+    encoder_scale="host.encoder_scale",
+    encoder_offset="host.offset",
     lead_error="axes.lead_error",
     coulomb_friction="axes.coulomb",  # MuJoCo's dry friction on the motor's joint
     viscous_friction="axes.viscous",
     backlash="axes.gap",  # between whose sides the load's guide is pushed, against MuJoCo's own soft contact
 )
-CATALOGUE.changes(scaled_by, torque_constant="axes.torque_gain")
+CATALOGUE.changes(scaled_by, controller_gain="host.gain", torque_constant="axes.torque_gain")
+CATALOGUE.changes(set_to, command_jitter="host.jitter", dropped_commands="host.loss", velocity_deadband="axes.deadband")
 
 
 def bristles(force: float, reach: float) -> tuple[Bristle, ...]:
@@ -133,3 +139,23 @@ def cable_drag_axis(rig: Rig, site: Site, x: float) -> dict[str, float]:
     axis.spring_rest = float(site.rng.uniform(-0.5, 0.5)) * stroke
     axis.bristles += bristles(0.6 * force, 0.3 * stroke)
     return {"stiffness": force / stroke, "force": 0.6 * force, "displacement": 0.3 * stroke}
+
+
+@known
+def drive_lag(rig: Rig, site: Site, time_constant: float) -> None:
+    """The force follows through two poles that together delay slow changes by `time_constant`."""
+    axis = axis_of(rig, site)
+    axis.drive = replace(axis.drive or Drive(), lag=time_constant)
+
+
+@known
+def force_saturation(rig: Rig, site: Site, limit: float) -> None:
+    """The force ends at a share of 12 N, of 0.3 N m on roll."""
+    axis = axis_of(rig, site)
+    axis.drive = replace(axis.drive or Drive(), limit=limit)
+
+
+@known
+def encoder_eccentricity(rig: Rig, site: Site, amplitude: float) -> None:
+    """The encoder's disc turns off its centre; the load does not move."""
+    rig.host.discs[site.index] = Eccentric(amplitude, axis_of(rig, site).lead, phase(site))
