@@ -40,29 +40,18 @@ class Motion(NamedTuple):
 class View(Protocol):
     """What the engine reads of a run to say in which regime a gap lives; machines add what their effects need."""
 
-    @property
-    def excitation(self) -> str:
-        """Name of what the run was driven with."""
-
-    @property
-    def rate(self) -> float | None:
-        """Samples per second of the residual grid, Hz; None where the samples are no course in time."""
-
-    @property
-    def loaded(self) -> Mask:
-        """(g,) True where a load acts."""
-
-    @property
-    def warmth(self) -> Array:
-        """(g,) temperature above the reference, K; zero where it was not recorded."""
-
-    @property
-    def temperature_known(self) -> bool:
-        """Whether the temperature was recorded."""
-
-    @property
-    def speed_share(self) -> Array:
-        """(g,) speed of the whole machine over its largest."""
+    excitation: str
+    """Name of what the run was driven with."""
+    rate: float | None
+    """Samples per second of the residual grid, Hz; None where the samples are no course in time."""
+    loaded: Mask
+    """(g,) True where a load acts."""
+    warmth: Array
+    """(g,) temperature above the reference, K; zero where it was not recorded."""
+    temperature_known: bool
+    """Whether the temperature was recorded."""
+    speed_share: Array
+    """(g,) speed of the whole machine over its largest."""
 
     def motion(self, actuator: str) -> Motion | None:
         """Return the motion of an axis; None for a place that is no axis."""

@@ -166,13 +166,9 @@ class Reporter(Generic[E]):
         """Return the machine as a drawing (SVG) with the places of its gaps lit; empty when there is none."""
         return ""
 
-    def first_traces(self, diagnosis: Findings[E]) -> list[Trace]:
-        """Return pictures of the machine's own that come first, of exact stages for example."""
-        return []
-
-    def last_traces(self, diagnosis: Findings[E]) -> list[Trace]:
-        """Return pictures of the machine's own that come last, of its end-to-end simulation for example."""
-        return []
+    def own_traces(self, diagnosis: Findings[E]) -> tuple[list[Trace], list[Trace]]:
+        """Return pictures of the machine's own: first ones, of exact stages for example, and last ones, of its end."""
+        return [], []
 
 
 def counted(excitations: Sequence[str]) -> str:

@@ -26,7 +26,7 @@ from sher3_gap.signals import RunSignals
 from sher3_gap.simulate.tip import tip_closure
 from sher3_gap.stages.exact.controller import controller_finding
 from sher3_gap.stages.exact.evidence import exact_evidence
-from sher3_gap.stages.exact.pages import with_pages
+from sher3_gap.stages.exact.findings import with_pages
 from sher3_gap.stages.exact.transport import transport_finding
 from sher3_gap.stages.noise import noise_of_sensors
 

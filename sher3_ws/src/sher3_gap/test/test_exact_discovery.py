@@ -13,8 +13,8 @@ from sher3_effects.found_page import save_found
 from sher3_effects.registry import VARIABLE
 from sher3_gap.stages.exact.controller import controller_finding
 from sher3_gap.stages.exact.evidence import exact_evidence
+from sher3_gap.stages.exact.findings import with_pages
 from sher3_gap.stages.exact.law import delayed, host_law
-from sher3_gap.stages.exact.pages import with_pages
 from sher3_gap.stages.exact.timing import timing_of
 from sher3_gap.stages.exact.transport import transport_finding
 

@@ -17,9 +17,8 @@ from sher3_diagnosis.evidence import Evidence
 class Recorded(Protocol):
     """What discovery asks of a view of a run."""
 
-    @property
-    def step(self) -> float:
-        """Time between two samples of the record, s."""
+    step: float
+    """Time between two samples of the record, s."""
 
     def recorded(self, channel: Channel) -> Quantities:
         """Return whatever was recorded that the law of a gap in a channel might depend on."""

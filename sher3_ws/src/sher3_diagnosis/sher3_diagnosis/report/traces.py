@@ -56,13 +56,13 @@ class _Lines:
 
 def traces(diagnosis: Diagnosis, reporter: Reporter) -> list[Trace]:
     """Return the pictures: the machine's own first ones, the worst channels, the machine's own last ones."""
-    first = reporter.first_traces(diagnosis)
+    first, last = reporter.own_traces(diagnosis)
     worst = [(f, g.channel) for f in diagnosis.findings for g in [g for g in f.gaps if g.significant][:WORST]]
     if not worst and not first:
         largest = [(f, f.gaps[0]) for f in diagnosis.findings if f.gaps]
         worst = [(f, g.channel) for f, g in sorted(largest, key=lambda x: -x[1].power)[:1]]
     made = [_channel(f, c, reporter) for f, c in worst]
-    return [*first, *(t for t in made if t is not None), *reporter.last_traces(diagnosis)]
+    return [*first, *(t for t in made if t is not None), *last]
 
 
 def _channel(finding: Finding, channel: Channel, reporter: Reporter) -> Trace | None:

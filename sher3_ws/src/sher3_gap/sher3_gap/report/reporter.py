@@ -9,6 +9,8 @@ from sher3_diagnosis.channel import STAGES, Array, Channel
 from sher3_diagnosis.finding import Findings
 from sher3_diagnosis.reporter import FLOWS, Isolability, Output, Reporter, Trace, counted
 
+from sher3_gap.case.assembling import NEEDED
+from sher3_gap.case.audit import STAGES_OF
 from sher3_gap.evidence import SherEvidence
 from sher3_gap.excitation import catalogue
 from sher3_gap.report.drawing import robot_drawing
@@ -17,16 +19,6 @@ from sher3_gap.stages.exact.timing import demand_in_force
 from sher3_gap.stages.isolability import structure
 from sher3_gap.stages.residuals import mean_force
 
-TOPIC_OF = {
-    "motor": "drives/measured_js",
-    "reference": "setpoint_js",
-    "command": "servo_jv",
-    "echo": "drives/setpoint_jv",
-    "load": "measured_js",
-    "wrench": "force/measured_cf",
-    "tracker_position": "tracker/measured_cp",
-}
-"""Signal of a run -> topic it comes from."""
 EXACT_NEEDS = {"controller": ("command", "reference", "load"), "transport": ("command", "echo")}
 """Exact stage -> signals it is computed from."""
 
@@ -68,7 +60,8 @@ class SherReporter(Reporter[SherEvidence]):
 
     def isolability(self, parts: Sequence[SherEvidence]) -> Isolability:
         """Return which effects the recorded topics can tell apart."""
-        return structure([topic for name, topic in TOPIC_OF.items() if recorded(parts[0].runs, name)])
+        topics = [topic for name, (topic, _) in STAGES_OF.items() if recorded(parts[0].runs, name)]
+        return structure([NEEDED, *topics])
 
     def run_name(self, evidence: SherEvidence, run: int) -> str:
         """Return name, excitation and repeat."""
@@ -100,18 +93,11 @@ class SherReporter(Reporter[SherEvidence]):
             lit |= {verdict.unexplained.actuator}
         return robot_drawing(diagnosis.findings[0].evidence.robot, lit)
 
-    def first_traces(self, diagnosis: Findings[SherEvidence]) -> list[Trace]:
-        """Return the picture of the transport stage where it failed."""
-        from sher3_gap.report.traces import transport_trace
+    def own_traces(self, diagnosis: Findings[SherEvidence]) -> tuple[list[Trace], list[Trace]]:
+        """Return the picture of the transport stage where it failed, and of the tip in free runs of the simulator."""
+        from sher3_gap.report.traces import free_run_trace, transport_trace
 
-        if not any(f.where.stage == "transport" for f in diagnosis.exact):
-            return []
-        found = transport_trace(diagnosis.findings[0].evidence)
-        return [] if found is None else [found]
-
-    def last_traces(self, diagnosis: Findings[SherEvidence]) -> list[Trace]:
-        """Return the picture of the tip in free runs of the simulator."""
-        from sher3_gap.report.traces import free_run_trace
-
-        found = free_run_trace(diagnosis.findings[0].evidence, diagnosis.verdict.causes)
-        return [] if found is None else [found]
+        evidence = diagnosis.findings[0].evidence
+        late = transport_trace(evidence) if any(f.where.stage == "transport" for f in diagnosis.exact) else None
+        tip = free_run_trace(evidence, diagnosis.verdict.causes)
+        return [x for x in (late,) if x is not None], [x for x in (tip,) if x is not None]
