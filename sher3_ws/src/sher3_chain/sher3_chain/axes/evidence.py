@@ -65,16 +65,12 @@ def gather_axis(runs: Sequence[AxesRun], axis: Axis, repeats: bool) -> AxisEvide
     """
     found = _gathered(runs, axis, repeats)
     tracked = axis.tracked if all("reference" in run.signals[axis.name] for run in runs) else None
-    if tracked is None or any(c.stage != BALANCE or force_is_seen(found, c) for c in found.channels):
+    signal = partial(signal_of, found)
+    if tracked is None or any(c.stage != BALANCE or hidden_share(found, c, signal) < 1.0 for c in found.channels):
         return found
     judged = _gathered(runs, tracked, repeats)
     note = f"{axis.name}: its effort tells no force balance; judged by how it follows its reference"
     return replace(judged, not_judged=found.not_judged, notes=[*found.notes, *judged.notes, note])
-
-
-def force_is_seen(evidence: AxisEvidence, channel: Channel) -> bool:
-    """Return whether the forces of a balance are larger than its floor."""
-    return hidden_share(evidence, channel, partial(signal_of, evidence)) < 1.0
 
 
 def signal_of(evidence: AxisEvidence, r: int, site: str, ok: Mask) -> Array:
@@ -114,7 +110,9 @@ def _gathered(runs: Sequence[AxesRun], axis: Axis, repeats: bool) -> AxisEvidenc
                 not_judged = str(error)
     carried = carried_in(axis.carried, [s.name for s in signals])
     records = [AxisView(s, axis, mass + (m or 0.0), load_mass) for s, m in zip(signals, carried, strict=True)]
-    found = [_judged(residuals_of(view), not_judged) for view in records]
+    found = [residuals_of(view) for view in records]
+    if not_judged:
+        found = [{c: x for c, x in residuals.items() if c.stage != BALANCE} for residuals in found]
     floors = floors_of(records, found, repeats)
     data = in_blocks(records, found, floors)
     return AxisEvidence(
@@ -154,11 +152,6 @@ def levels_of(signals: Sequence[AxisSignals], axis: Axis) -> list[str]:
             notes += [level_note(f"{s.name}: {axis.name}.effort", flat)] if flat.any() else []
             notes += [off_note(f"{s.name}: {axis.name}.effort", silent)] if silent.any() else []
     return notes
-
-
-def _judged(found: Residuals, reason: str) -> Residuals:
-    """Return the residuals without the force balance where the mass could not be identified."""
-    return {c: x for c, x in found.items() if not reason or c.stage != "motor_mechanics"}
 
 
 def units_of(axis: Axis) -> Mapping[Channel, str]:

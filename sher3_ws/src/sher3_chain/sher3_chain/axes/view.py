@@ -5,8 +5,7 @@ from __future__ import annotations
 from functools import cached_property
 
 import numpy as np
-from sher3_diagnosis.channel import Array, Channel, Mask
-from sher3_diagnosis.discover.feature import Quantities, Quantity
+from sher3_diagnosis.channel import Array, Mask
 from sher3_diagnosis.filter import EDGE, settled
 from sher3_diagnosis.localise.readings import noise_of
 from sher3_effects.operators import second_difference
@@ -260,21 +259,3 @@ class AxisView(ChainView):
             needed = run.to_grid(run.effort)
         past = self.gone_through(needed[:, 0])
         return felt | {"acceleration": self.acceleration, "force": needed, "loading": past}
-
-    # what discovery reads
-
-    def recorded(self, channel: Channel) -> Quantities:
-        """Return what was recorded that the law of a gap might depend on; not the effort, which is the output."""
-        run, unit = self.run, "rad" if self.described.motion == "rotary" else "m"
-        newton = self.described.unit_of_force
-        weight = np.interp(run.stage_clock, run.stage_clock[run.grid], self.path.gravity[:, 0])
-        acceleration = np.gradient(run.velocity[:, 0], run.period)
-        force = self.mass * acceleration + self.described.viscous * run.velocity[:, 0] + weight
-        return {
-            "position": Quantity(run.smooth[:, 0], unit, "the position", "place"),
-            "velocity": Quantity(run.velocity[:, 0], f"{unit}/s", "the velocity", "speed"),
-            "acceleration": Quantity(acceleration, f"{unit}/s^2", "the acceleration", "state"),
-            "force": Quantity(force, newton, "the force that the motion needs", "force"),
-            "load": Quantity(weight, newton, "the weight on the axis", "force"),
-            "time": Quantity(run.stage_clock, "s", "the time since the run began", "clock"),
-        }

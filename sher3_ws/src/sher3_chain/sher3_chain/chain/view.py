@@ -9,7 +9,8 @@ from typing import NamedTuple
 
 import numpy as np
 from scipy.ndimage import maximum_filter1d, minimum_filter1d
-from sher3_diagnosis.channel import Array, Mask
+from sher3_diagnosis.channel import Array, Channel, Mask
+from sher3_diagnosis.discover.feature import Quantities, Quantity
 from sher3_diagnosis.evidence import Motion
 from sher3_diagnosis.filter import DECIMATED_RATE, EDGE
 from sher3_effects.motion import GridView
@@ -85,6 +86,11 @@ class ChainView(GridView, ABC):
     @abstractmethod
     def path(self) -> Loads:
         """Nominal weight on every joint along the motion, and known forces from outside."""
+
+    @cached_property
+    @abstractmethod
+    def inertial(self) -> Array:
+        """Nominal force that the measured motion needs, (g, n)."""
 
     # what the engine reads
 
@@ -178,3 +184,20 @@ class ChainView(GridView, ABC):
         return np.asarray(maximum_filter1d(stays, 2 * (run.stride // 2) + 1)[run.grid])
 
     # what discovery reads
+
+    def recorded(self, channel: Channel) -> Quantities:
+        """Return what was recorded that the law of a gap of a joint might depend on; not the effort, the output."""
+        run, row, joint = self.run, self.row(channel.actuator), self.joints[self.row(channel.actuator)]
+        unit, newton = joint.unit_of_position, joint.unit_of_force
+        need, weight = (
+            np.interp(run.stage_clock, run.stage_clock[run.grid], x[:, row]) for x in (self.inertial, self.path.gravity)
+        )
+        acceleration = np.gradient(run.velocity[:, row], run.period)
+        return {
+            "position": Quantity(run.smooth[:, row], unit, "the position", "place"),
+            "velocity": Quantity(run.velocity[:, row], f"{unit}/s", "the velocity", "speed"),
+            "acceleration": Quantity(acceleration, f"{unit}/s^2", "the acceleration", "state"),
+            "force": Quantity(need, newton, "the force that the motion needs", "force"),
+            "load": Quantity(weight, newton, "the weight on the joint", "force"),
+            "time": Quantity(run.stage_clock, "s", "the time since the run began", "clock"),
+        }

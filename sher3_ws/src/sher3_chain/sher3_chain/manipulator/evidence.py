@@ -15,6 +15,7 @@ from sher3_machines.thresholds import BLOCKS
 
 from sher3_chain.chain.evidence import ChainEvidence, in_blocks
 from sher3_chain.constants import ZERO, constants
+from sher3_chain.floors.innovation import chain_floors, plain_innovation
 from sher3_chain.joint.conditions import carried_in, conditions_of, reference_runs
 from sher3_chain.joint.own_unit import RECORDED, renamed
 from sher3_chain.joint.record import AxesRun
@@ -23,7 +24,7 @@ from sher3_chain.manipulator.encoders import links_of
 from sher3_chain.manipulator.identification.gains import backwards, share_of
 from sher3_chain.manipulator.identification.inertias import Inertias, identified_inertias
 from sher3_chain.manipulator.model import ArmModel
-from sher3_chain.manipulator.readings.floors import floors_of
+from sher3_chain.manipulator.readings.floors import resolution_floors
 from sher3_chain.manipulator.readings.mounted import mounted
 from sher3_chain.manipulator.readings.senses import against_model
 from sher3_chain.manipulator.readings.senses import turned as turned_round
@@ -77,11 +78,6 @@ def channel_of(joint: str) -> Channel:
 def between(joint: str) -> Channel:
     """Return the difference of the two encoders of a joint."""
     return Channel("transmission", joint)
-
-
-def channels_of(joint: str) -> list[Channel]:
-    """Return the channels that are looked at for a joint alone."""
-    return [channel_of(joint), between(joint)]
 
 
 def gather_arm_motion(
@@ -148,7 +144,7 @@ def gather_arm_motion(
     residuals = [residuals_of(view, judged) for view in views]
     if not any(residuals):
         raise not_judged(judged, signals, slips)
-    floors = floors_of(views, residuals, repeats)
+    floors = chain_floors(views, residuals, repeats, resolution_floors, plain_innovation)
     seen = tuple(j for j in judged if any(channel_of(j) in x for x in residuals))
     data = in_blocks(views, residuals, floors)
     return ArmMotionEvidence(
@@ -156,7 +152,10 @@ def gather_arm_motion(
         data=data,
         nuisance=constants(data, ZERO, [between(j) for j in judged]),
         units={
-            **{channel_of(j.name): unit_of_force(j.gain == "unknown", j.motion) for j in described.joints},
+            **{
+                channel_of(j.name): RECORDED if j.gain == "unknown" else "N" if j.motion == "linear" else "N*m"
+                for j in described.joints
+            },
             **{between(j.name): j.unit_of_position for j in described.joints},
         },
         places={"axis": seen, "link": model.links},
@@ -220,11 +219,6 @@ def _put_right(
         assert s.effort is not None
         out.append(replace(s, effort=s.effort / np.array(by)))
     return out
-
-
-def unit_of_force(own: bool, motion: str) -> str:
-    """Return the unit of a joint's force; its `own` where the gain is not known."""
-    return RECORDED if own else ("N" if motion == "linear" else "N*m")
 
 
 def of_channel(

@@ -55,7 +55,7 @@ from sher3_chain.search.friction_in_motion import requantified
 from sher3_chain.servo.laws import laws_of_servos
 
 if TYPE_CHECKING:
-    from sher3_chain.manipulator.report.reporter import ManipulatorReporter
+    from sher3_chain.manipulator.reporter import ManipulatorReporter
 
 
 IN_GAIN = (GAIN, PAYLOAD)
@@ -204,7 +204,7 @@ class Manipulator(Chain[ArmMotionEvidence]):
 
     def reporter(self) -> ManipulatorReporter:
         """Return the part of this machine in a report."""
-        from sher3_chain.manipulator.report.reporter import ManipulatorReporter
+        from sher3_chain.manipulator.reporter import ManipulatorReporter
 
         return ManipulatorReporter(self.described.model, self.model.losses is not None)
 

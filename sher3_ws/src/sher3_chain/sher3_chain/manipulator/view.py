@@ -8,8 +8,7 @@ from functools import cached_property
 
 import numpy as np
 from scipy.ndimage import maximum_filter1d
-from sher3_diagnosis.channel import Array, Channel, Mask
-from sher3_diagnosis.discover.feature import Quantities, Quantity
+from sher3_diagnosis.channel import Array, Mask
 from sher3_diagnosis.filter import settled
 from sher3_effects.view import NominalAxis
 
@@ -287,22 +286,3 @@ class MotionView(ChainView):
     def everything(self) -> Array:
         """Return (g, k) everything that was recorded of the whole arm but its efforts."""
         return np.hstack([self.position, self.velocity, np.sign(self.velocity) * self.moving, self.acceleration])
-
-    # what discovery reads
-
-    def recorded(self, channel: Channel) -> Quantities:
-        """Return what was recorded that the law of a gap of a joint might depend on; not the effort, the output."""
-        run, row, joint = self.run, self.row(channel.actuator), self.joints[self.row(channel.actuator)]
-        turns, newton = joint.unit_of_position, "N*m" if joint.motion == "rotary" else "N"
-        need, weight = (
-            np.interp(run.stage_clock, run.stage_clock[run.grid], x[:, row]) for x in (self.inertial, self.path.gravity)
-        )
-        acceleration = np.gradient(run.velocity[:, row], run.period)
-        return {
-            "position": Quantity(run.smooth[:, row], turns, "the position", "place"),
-            "velocity": Quantity(run.velocity[:, row], f"{turns}/s", "the velocity", "speed"),
-            "acceleration": Quantity(acceleration, f"{turns}/s^2", "the acceleration", "state"),
-            "force": Quantity(need, newton, "the force that the motion needs", "force"),
-            "load": Quantity(weight, newton, "the weight on the joint", "force"),
-            "time": Quantity(run.stage_clock, "s", "the time since the run began", "clock"),
-        }

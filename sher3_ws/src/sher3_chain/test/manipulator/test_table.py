@@ -3,7 +3,7 @@
 from causes_at import caused
 from lifts import friction, machine, motion, needed, run_of
 from sher3_chain.manipulator.library import of_joints
-from sher3_chain.manipulator.report.table import HEADS, table_of
+from sher3_chain.manipulator.reporter import HEADS, table_of
 from sher3_diagnosis import diagnose
 from sher3_diagnosis.report.page import render
 from sher3_effects import pages

@@ -22,9 +22,8 @@ class Figures(Protocol):
 
     standard: str
 
-    @property
-    def unit(self) -> str:
-        """Unit of the figures."""
+    unit: str
+    """Unit of the figures."""
 
     def without(self, part: Array) -> Positioning | Circular:
         """Return the figures after a part (g,) of the deviations is taken off."""

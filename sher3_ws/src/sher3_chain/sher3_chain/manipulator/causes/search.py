@@ -32,7 +32,7 @@ from sher3_chain.manipulator.causes.lateness import LATE, OF_LAW, Late, lateness
 from sher3_chain.manipulator.causes.links import CLEARLY, wrong_links
 from sher3_chain.manipulator.causes.payload import beside, centred, closes, middle, payloads
 from sher3_chain.manipulator.causes.plan import BESIDE_LINKS, JOINT, TOGETHER, bought, laws_beside_links, spent
-from sher3_chain.manipulator.evidence import ArmMotionEvidence, channel_of, channels_of, of_channel
+from sher3_chain.manipulator.evidence import ArmMotionEvidence, between, channel_of, of_channel
 from sher3_chain.search.friction_in_motion import without_slow
 
 BODILY = {"acceleration", "position"}
@@ -97,7 +97,7 @@ def _explained(
     linked = any(t.effect.free() is not None for t in loads)
     effects = laws_beside_links(effects) if linked else effects
     alone: list[Attribution] = []
-    for channel in (c for joint in evidence.judged for c in channels_of(joint)):
+    for channel in (c for joint in evidence.judged for c in (channel_of(joint), between(joint))):
         own = of_channel(evidence, channel, beside)
         say(f"{channel}{' beside ' + ' and '.join(t.site for t in loads) if loads else ''}")
         balance = channel == channel_of(channel.actuator)
@@ -107,15 +107,11 @@ def _explained(
         alone.append(_beside_delay(own, late, effects, say, plans) if balance else _searched(own, effects, say))
     terms = [*evidence.nuisance, *loads]
     for found in alone:
-        terms += [candidates.term(t.effect, t.site, t.shape) for t in _causes(found)]
+        terms += [candidates.term(t.effect, t.site, t.shape) for t in found.fit.terms if t.effect.family != NUISANCE]
     whole, first = fit(evidence.data, terms), len(evidence.nuisance)
     for at in range(first, first + len(loads)):
         whole = centred(candidates, whole, at)
     return Explained(bought(evidence, whole, first + len(loads)), alone)
-
-
-def _causes(found: Attribution) -> list[Term]:
-    return [t for t in found.fit.terms if t.effect.family != NUISANCE]
 
 
 def _searched(

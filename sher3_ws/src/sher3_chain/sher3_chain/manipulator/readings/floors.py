@@ -6,24 +6,17 @@ of it: on every joint, and with the posture. A median over the record sees the q
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
-from sher3_diagnosis.channel import Array, Channel, Floors, Residuals
+from sher3_diagnosis.channel import Array, Channel, Floors
 from sher3_diagnosis.localise.floors import UNIFORM
 from sher3_diagnosis.localise.readings import noise_of
 
-from sher3_chain.floors.innovation import NOTHING, chain_floors, plain_innovation, white_behind
+from sher3_chain.floors.innovation import NOTHING, white_behind
 from sher3_chain.manipulator.description import PER_RUN
 from sher3_chain.manipulator.view import MotionView
 
 POSTURES = 100
 """Postures of a record at which the inertia is reckoned: an rms over them is known to a few per cent."""
-
-
-def floors_of(views: Sequence[MotionView], found: Sequence[Residuals], repeats: bool) -> list[Floors]:
-    """Return the floor per record and channel of an arm; `repeats` of one motion, or not."""
-    return chain_floors(views, found, repeats, resolution_floors, plain_innovation)
 
 
 def resolution_floors(view: MotionView) -> Floors:

@@ -1,14 +1,21 @@
-"""The constants of an arm as a mechanic asks for them: a row for each joint, a column for each kind of constant."""
+"""What a report shows that only a serial arm in motion knows: its efforts, and its constants joint by joint."""
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Iterable, Mapping, Sequence
 
+from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.effect import Effect
+from sher3_diagnosis.finding import Findings
 from sher3_diagnosis.report.summary import shown_parameters, significant
-from sher3_diagnosis.reporter import EMPTY, Table
+from sher3_diagnosis.reporter import EMPTY, Output, Table
 from sher3_diagnosis.verdict import Cause
 from sher3_diagnosis.words import place, quantity, range_text, words
+
+from sher3_chain.chain.reporter import ChainReporter
+from sher3_chain.manipulator.evidence import ArmMotionEvidence
+from sher3_chain.manipulator.library import of_joints
 
 OTHER = "other"
 HEADS: Mapping[str, Sequence[str]] = {
@@ -24,6 +31,32 @@ HEADS: Mapping[str, Sequence[str]] = {
 }
 """Head of a column -> constants of the equation of motion, and families of what has none, that stand in it."""
 NOT_JUDGED = "not judged"
+
+
+class ManipulatorReporter(ChainReporter[ArmMotionEvidence]):
+    """The part of an arm in motion in a report: measured, nominal and corrected effort over time."""
+
+    def __init__(self, model: str, mjcf: bool) -> None:
+        """Take the file of the arm, and whether it is one of MuJoCo or a URDF."""
+        kind, ending = ("mjcf", "xml") if mjcf else ("urdf", "urdf")
+        self.target = f"--to {kind} --model {shlex.quote(model)} --out corrected.{ending}"
+
+    def joints(self, parts: Sequence[ArmMotionEvidence]) -> str:
+        """Return the number of joints."""
+        return f"{len(parts[0].described.joints)} joints"
+
+    def table(self, diagnosis: Findings[ArmMotionEvidence]) -> Table | None:
+        """Return joints by constants; None where no joint was looked at."""
+        if not diagnosis.findings or not diagnosis.verdict.causes:
+            return None
+        evidence = diagnosis.findings[0].evidence
+        names = [joint.name for joint in evidence.described.joints]
+        return table_of(diagnosis.verdict.causes, of_joints(), names, evidence.judged)
+
+    def output(self, evidence: ArmMotionEvidence, run: int, channel: Channel) -> Output:
+        """Return the effort of a joint."""
+        view = evidence.records[evidence.record_of(run)]
+        return Output("effort", view.effort[:, view.row(channel.actuator)])
 
 
 def table_of(causes: Iterable[Cause], library: Iterable[Effect], joints: Sequence[str], judged: Sequence[str]) -> Table:
