@@ -5,7 +5,6 @@ sources before the others are read, so they cannot lag behind. Those under `gene
 pages where the repository is shown, and `tests/documentation/test_generated.py` compares them with the sources.
 """
 
-import functools
 import gc
 import importlib
 import inspect
@@ -23,12 +22,10 @@ from generators import write_pages  # noqa: E402
 from generators.api import module_names  # noqa: E402
 from generators.docstrings import to_restructured_text  # noqa: E402
 from sphinx.domains.python import PythonDomain  # noqa: E402
-from sphinx.ext.autodoc._dynamic import _signatures  # noqa: E402
+from sphinx.ext.autodoc.preserve_defaults import update_default_value  # noqa: E402
 from sphinx.pycode.parser import Parser  # noqa: E402
 
-# Who asks for the source of a class has Python parse its whole module again, and autodoc asks some thirty thousand
-# times. Nor does anybody read what Sphinx would say for debugging, or where in its file a definition ends.
-inspect.findsource = functools.cache(inspect.findsource)
+# Nobody reads what Sphinx would say for debugging, or where in its file a definition ends; it has no setting for that.
 logging.getLogger("sphinx").setLevel(logging.INFO)
 Parser.parse_definition = lambda self: None
 gc.set_threshold(50_000, 20, 50)
@@ -51,7 +48,6 @@ suppress_warnings = ["misc.highlighting_failure"]
 autodoc_typehints = "signature"
 autodoc_member_order = "bysource"
 autodoc_default_options = {"members": True, "show-inheritance": True}
-autodoc_preserve_defaults = True
 autodoc_use_type_comments = False
 smartquotes = False
 napoleon_numpy_docstring = False
@@ -88,14 +84,11 @@ class ExactPythonDomain(PythonDomain):
         return super().find_obj(env, modname, classname, name, type, 0)
 
 
-def keep_defaults(function, bound_method, keep=_signatures.update_default_value) -> None:
-    """Show default values as they are written; a function without any is not parsed for them."""
-    plain = inspect.unwrap(function)
-    if not inspect.isfunction(plain) or plain.__defaults__ or plain.__kwdefaults__:
-        keep(function, bound_method)
-
-
-_signatures.update_default_value = keep_defaults
+def keep_defaults(app, thing, bound_method) -> None:
+    """Show default values as they are written; only functions that have some are parsed for them."""
+    plain = inspect.unwrap(getattr(thing, "__func__", thing))
+    if inspect.isfunction(plain) and (plain.__defaults__ or plain.__kwdefaults__):
+        update_default_value(thing, bound_method)
 
 
 def prepare(app) -> None:
@@ -115,6 +108,7 @@ def setup(app) -> None:
     """Write the generated pages, and let autodoc read docstrings that are plain text with Markdown's backticks."""
     app.add_domain(ExactPythonDomain, override=True)
     app.connect("builder-inited", prepare)
+    app.connect("autodoc-before-process-signature", keep_defaults)
     app.connect("autodoc-skip-member", skip_bound_methods)
     # Before napoleon, which listens with priority 500 and expects reStructuredText.
     app.connect("autodoc-process-docstring", to_restructured_text, priority=100)
