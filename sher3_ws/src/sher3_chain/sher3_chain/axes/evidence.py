@@ -104,7 +104,8 @@ def _gathered(runs: Sequence[AxesRun], axis: Axis, repeats: bool) -> AxisEvidenc
         except MachineError as error:
             share = share_of_inertia([AxisView(s, axis, 0.0) for s in signals])
             if share < NO_INERTIA:
-                text = f"the record does not tell its mass, which needs at most {share:.1%} of the force; left out"
+                most = f"{100.0 * share:.2g} % of the force"
+                text = f"the record does not tell its mass, which needs at most {most}; left out"
                 notes = [*notes, f"{axis.name}: {text}"]
             else:
                 not_judged = str(error)

@@ -74,3 +74,13 @@ def test_units_follow_the_motion():
     assert units_of(axis_of()) == {MOTOR: "N", LINK: "m"}
     assert units_of(axis_of(motion="rotary")) == {MOTOR: "N*m", LINK: "rad"}
     assert units_of(axis_of(**SERVO)) == {MOTOR: "rad", LINK: "rad"}
+
+
+def test_the_share_of_a_mass_that_is_left_out_has_a_number():
+    """A speed that hardly changes under friction: a mass needs 0.025 % of the force, which was "0.0%"."""
+    speed = 0.5 + 0.2 * np.sin(0.001 * np.arange(4000))
+    force = 3.0 + 40.0 * speed + 0.02 * np.random.default_rng(0).normal(size=len(speed))
+    driven = axis_of(mass="unknown", encoder_resolution=1e-7)
+    found = gather_axis([run(position=0.02 * np.cumsum(speed), effort=force)], driven, False)
+    (note,) = [n for n in found.notes if "left out" in n]
+    assert 0.0 < float(note.split("at most ")[1].split(" %")[0]) < 0.05
