@@ -97,11 +97,14 @@ class TableExpansion(Page):
 
         Coefficients: that of the target (1,) [1/K]; where any place may be fixed, that of the warmth too (2,).
         """
-        a = float(coefficients[0])
-        return {"coefficient": a, **({"rest": -float(coefficients[1]) / a if a else 0.0} if shape else {})}
+        a, *still = map(float, coefficients)
+        return {"coefficient": a, **({"rest": -still[0] / a if a else 0.0} if still else {})}
 
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
-        """Return whether the place that stays, of (2,), is in the travel or half of it beyond: a bearing is near it."""
+        """Return whether the place that stays, of (2,), is in the travel or half of it beyond: a bearing is near it.
+
+        An axis between two encoders may be clamped anywhere: its shape tells no travel.
+        """
         return not shape or abs(float(coefficients[1])) <= 2.0 * shape["half"] * abs(float(coefficients[0]))
 
 
@@ -109,7 +112,6 @@ class ExpansionOnAxis(TableExpansion):
     """The same between two encoders of any axis: load - motor = coefficient * (T - 20 deg C) * (position - rest)."""
 
     kinds, needs = ("axis", "servo"), ("load", "temperature")
-    units = {"coefficient": "1/K", "rest": "m"}
     explanation = "Screw, belt or frame grow between the two encoders, in proportion to their warmth and to the travel."
 
     def shapes(self, views: Sequence[Any], site: str) -> list[Shape]:
@@ -120,15 +122,6 @@ class ExpansionOnAxis(TableExpansion):
         """Return two columns: the warmth times the position, and the warmth."""
         place = view.position[:, view.row(site)]
         return Signature({Channel(self.stage, site): column(place * view.warmth, view.warmth)})
-
-    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Return the coefficient of expansion [1/K], and the position that does not move with the warmth, of (2,)."""
-        a, b = map(float, coefficients)
-        return {"coefficient": a, "rest": -b / a if a else 0.0}
-
-    def admissible(self, shape: Shape, coefficients: Array) -> bool:
-        """Return True for any coefficients (2,): an axis may be clamped far outside of its travel."""
-        return True
 
 
 @dataclass(frozen=True)

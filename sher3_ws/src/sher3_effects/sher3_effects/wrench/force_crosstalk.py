@@ -36,12 +36,14 @@ class ForceCrosstalk(Page):
     PAIRS = tuple("xyz"[i] + "xyz"[j] for j, i in FORCES)
     EVERY = FORCES + tuple((j, i) for j in range(6) for i in range(6) if i != j and max(i, j) > 2)
     """Pairs (source, target) of forces, then those with moments."""
+    SEVERAL: ClassVar[tuple[float, ...]] = (-1.0, -2.0)
+    """Every pair of forces (-1), and every pair of forces and moments (-2)."""
     units = {"coefficient": "1", "source": "1", "target": "1", **dict.fromkeys(PAIRS, "1")}
 
     def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
-        """A pair (source, target), every pair of forces (-1), or every pair of forces and moments (-2)."""
-        pairs: list[Shape] = [{"source": float(j), "target": float(i)} for j, i in self.FORCES]
-        return [{"source": n, "target": n} for n in (-1.0, -2.0)] + pairs
+        """Return those of `SEVERAL`, and each pair (source, target) of forces."""
+        pairs = (*((n, n) for n in self.SEVERAL), *self.FORCES)
+        return [{"source": float(j), "target": float(i)} for j, i in pairs]
 
     def _pairs(self, shape: Shape) -> Sequence[tuple[int, int]]:
         several = {-1.0: self.FORCES, -2.0: self.EVERY}
@@ -89,11 +91,7 @@ class SensorCrosstalk(ForceCrosstalk):
     """
 
     kinds = ("sensor",)
-
-    def shapes(self, views: Sequence[Any], site: str) -> list[Shape]:
-        """Return each pair of forces, and all of them (-1)."""
-        pairs: list[Shape] = [{"source": float(j), "target": float(i)} for j, i in self.FORCES]
-        return [{"source": -1.0, "target": -1.0}, *pairs]
+    SEVERAL = (-1.0,)
 
 
 def coupling(pair: str, default: float = 0.0) -> Any:
