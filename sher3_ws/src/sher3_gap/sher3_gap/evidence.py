@@ -30,11 +30,13 @@ class SherEvidence(Evidence):
     Attributes:
         runs: signals of every run.
         robot: the nominal model.
+        twins: the nominal model driven as each run was.
         timing: what the echo tells of the commands' timing; None where it was not recorded.
     """
 
     runs: Sequence[RunSignals]
     robot: Robot
+    twins: Sequence[RunSignals]
     timing: Timing | None
 
     def view(self, run: int) -> SherView:
@@ -48,10 +50,10 @@ SHIFTS = (0.0, 0.5)
 """Shares of an encoder count by which the simulated twins are shifted."""
 
 
-def own_residuals(run: RunSignals, robot: Robot, shift: float) -> Residuals:
-    """Residuals of the nominal plant driven as a run was; a run without set-points is followed."""
-    twin = driven_as(followed(run), robot, shift=shift)
-    return {} if twin is None else all_residuals(twin, robot, Geometry(robot))
+def twins_of(run: RunSignals, robot: Robot) -> list[RunSignals]:
+    """Return the nominal plant driven as a run was, once for each shift; a run without set-points is followed."""
+    made = (driven_as(followed(run), robot, shift=shift) for shift in SHIFTS)
+    return [twin for twin in made if twin is not None]
 
 
 def gather(runs: Sequence[RunSignals], robot: Robot) -> SherEvidence:
@@ -60,7 +62,8 @@ def gather(runs: Sequence[RunSignals], robot: Robot) -> SherEvidence:
     timing = timing_of(runs, robot)
     demands = [demand_in_force(run, robot, timing) for run in runs]
     residuals = [all_residuals(run, robot, geometry, d) for run, d in zip(runs, demands, strict=True)]
-    simulated = [[own_residuals(run, robot, shift) for shift in SHIFTS] for run in runs]
+    twins = [twins_of(run, robot) for run in runs]
+    simulated = [[all_residuals(twin, robot, Geometry(robot)) for twin in own] for own in twins]
     own = floors(runs, residuals, simulated, robot)
     own = [with_load(f, run, robot, geometry) for f, run in zip(own, runs, strict=True)]
     views = [SherView(run, robot, geometry) for run in runs]
@@ -80,6 +83,7 @@ def gather(runs: Sequence[RunSignals], robot: Robot) -> SherEvidence:
         nuisance=as_built(data, list(tolerated(data, robot))),
         runs=list(runs),
         robot=robot,
+        twins=[unshifted for unshifted, *_ in twins],
         timing=timing,
     )
 

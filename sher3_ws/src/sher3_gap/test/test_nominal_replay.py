@@ -3,7 +3,10 @@
 import numpy as np
 import pytest
 from recorded import ROBOT, run, stroke
+from sher3_gap.evidence import gather
 from sher3_gap.nominal_replay import bridged, driven_as, followed
+from sher3_gap.simulate.tip import tip_error
+from simulated import runs_of, signals
 
 
 def test_a_run_without_set_points_has_no_twin_but_can_be_followed():
@@ -26,3 +29,9 @@ def test_a_load_is_bridged_by_a_straight_line_where_it_is_not_known():
     assert bridged(run(5, contact=contact, contact_known=known))[:, 0].tolist() == [0.0, 1.0, 2.0, 3.0, 3.0]
     assert not bridged(run(5)).any()
     assert bridged(run(5, contact=contact)) is not None
+
+
+def test_the_evidence_keeps_the_nominal_model_driven_as_each_run_was():
+    runs = signals(runs_of(["steps"], repeats=2))
+    for own, twin in zip(runs, gather(runs, ROBOT).twins, strict=True):
+        assert np.array_equal(tip_error(own, twin), tip_error(own, driven_as(own, ROBOT)))

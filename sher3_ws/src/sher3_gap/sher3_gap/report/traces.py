@@ -27,11 +27,12 @@ def free_run_trace(evidence: SherEvidence, causes: Sequence[Cause]) -> Trace | N
 
     None without tracker, set-points or causes.
     """
-    runs = [r for r in evidence.runs if r.tracker_position is not None and r.reference is not None]
-    if not runs or not causes:
+    pairs = zip(evidence.runs, evidence.twins, strict=True)
+    tracked = [(r, twin) for r, twin in pairs if r.tracker_position is not None and r.reference is not None]
+    if not tracked or not causes:
         return None
-    nominal = {r.name: tip_error(r, driven_as(r, evidence.robot)) for r in runs}
-    run = max(runs, key=lambda r: float(np.mean(nominal[r.name] ** 2)))
+    nominal = {r.name: tip_error(r, twin) for r, twin in tracked}
+    run = max((r for r, _ in tracked), key=lambda r: float(np.mean(nominal[r.name] ** 2)))
     corrected = tip_error(run, driven_as(run, evidence.robot, effects=to_effects(causes, evidence.robot)))
     assert run.tracker_index is not None
     clock = run.stage_clock[run.tracker_index][: len(corrected)]
