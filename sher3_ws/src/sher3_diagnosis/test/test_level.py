@@ -39,6 +39,13 @@ def test_other_places_tell_the_level():
     assert middle(well) < 0.01 and middle(badly) > 0.1
 
 
+def test_a_bend_of_other_places_tells_the_level_as_what_is_strange_to_their_causes_does():
+    strange, bent = (
+        level_weights([item("a"), *(item(j, left=0.1, stray=stray) for j in "bcd")])[0] for stray in (0.1, 0.0)
+    )
+    assert bent == pytest.approx(strange)
+
+
 def test_what_is_left_counts_in_units_of_the_level():
     assert at_level(NUMBERS, 10.0 * USUAL) == pytest.approx(NUMBERS | {"left": 0.025})  # a quarter of what laws explain
     beside = at_level(NUMBERS | {"part": 0.5}, 10.0 * USUAL)  # of all laws of the gap

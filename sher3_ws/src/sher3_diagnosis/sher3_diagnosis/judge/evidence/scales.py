@@ -75,8 +75,8 @@ def beside_others(left: float, numbers: Mapping[str, float]) -> float:
 
 
 def of_whole(numbers: Mapping[str, float]) -> float:
-    """Return what is left that is strange to a cause, as a share of the whole gap, no less than what is told."""
-    return min(max(strange(numbers) * numbers.get("part", 1.0), LEAST_SHARE), 1.0)
+    """Return what is left, bends of the law too, as a share of the whole gap, no less than what is told."""
+    return min(max(numbers["left"] * numbers.get("part", 1.0), LEAST_SHARE), 1.0)
 
 
 def strange(numbers: Mapping[str, float]) -> float:
