@@ -221,6 +221,9 @@ class ArmView(Protocol):
     def place(self, site: str) -> Array:
         """Return where a joint is in the base frame, (n, 3), m."""
 
+    def carried(self, site: str) -> tuple[Array, Array]:
+        """Return what a joint carries, in the base frame: the flange, and the middle of the links (n, 3) each, m."""
+
     def turned(self, axis: Array, through: Array) -> Array:
         """Return the pose change (n, 6) per rad of a turn about `axis` (n, 3) through a point (n, 3), base frame."""
 

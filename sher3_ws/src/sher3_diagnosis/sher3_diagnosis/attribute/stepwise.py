@@ -47,24 +47,35 @@ def grow(candidates: Candidates, effects: Sequence[Effect], current: Fit) -> Fit
 
     Args:
         candidates: the evidence, and the sites effects may sit on.
-        effects: that may be added, at every site.
+        effects: that may be added, at every site, in one of the shapes they try.
         current: to be grown; terms it has are kept while they are worth their price.
     """
     evidence = candidates.evidence
     base = evidence.null().total
-    left = [candidates.term(e, site, {}) for e in effects for site in candidates.sites(e)]
+    left = [candidates.term(e, site, shape) for e in effects for site in candidates.sites(e) for shape in e.tried]
     while left:
         trials = [fit(evidence.data, [*current.terms, t]) for t in left]
-        cheapest = first_of_least({i: trials[i].total + PRICE * complexity(t) for i, t in enumerate(left)})
+        costs = {i: trials[i].total + PRICE * complexity(t) for i, t in enumerate(left) if _within_limits(trials[i])}
+        if not costs:
+            break
+        cheapest = first_of_least(costs)
         if current.total - trials[cheapest].total < _needed(left[cheapest], base, current):
             break
-        current = trials[cheapest]
-        left.pop(cheapest)
+        current, taken = trials[cheapest], left[cheapest]
+        left = [t for t in left if (t.effect, t.site) != (taken.effect, taken.site)]
 
     def worth(now: Fit, i: int, without: Fit) -> bool:
         return without.total - now.total > _needed(now.terms[i], base, now)
 
     return pruned_by(evidence, current, worth)
+
+
+def _within_limits(trial: Fit) -> bool:
+    """Return whether the numbers of the last term may be what its page says that they are."""
+    last = len(trial.terms) - 1
+    term = trial.terms[last]
+    values = term.effect.parameters(term.shape, trial.of(last))
+    return all(low <= values[name] <= high for name, (low, high) in term.effect.limits(term.shape).items())
 
 
 def _needed(term: Term, base: float, current: Fit) -> float:

@@ -50,6 +50,12 @@ class ArmView(Still):
         """Return where a joint is in the base frame, (n, 3), m."""
         return self.postures.frames[:, self.row(site), :3, 3]
 
+    def carried(self, site: str) -> tuple[Array, Array]:
+        """Return what a joint carries, in the base frame: the flange, and the middle of the links (n, 3) each, m."""
+        behind = self.postures.frames[:, self.row(site) :, :3, 3]
+        tip = self.postures.tip[:, :3, 3]
+        return tip, np.concatenate([behind, tip[:, None]], axis=1).mean(axis=1)
+
     def turned(self, axis: Array, through: Array) -> Array:
         """Return the change (n, d) of what is seen per rad of a turn about `axis` through a point, (n, 3) each."""
         turn = self.base[:3, :3]
