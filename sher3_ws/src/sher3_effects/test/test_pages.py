@@ -120,7 +120,7 @@ def test_pages_that_need_more_than_is_known_are_left_out():
     assert "backlash" in {page.id for page in pages("axis", {"load"})}
     assert {p.id for p in pages("axis", {"alone", "drive"})} - bare >= {"backlash", "transmission_compliance"}
     assert {p.id for p in pages("servo", {"behind"})} - {p.id for p in pages("servo", ())} == {"backlash"}
-    assert {page.id for page in pages("arm")} == {"encoder_offset", "link_length_error", "rail_tilt"}
+    assert {page.id for page in pages("arm")} == {"encoder_offset", "joint_sag", "link_length_error", "rail_tilt"}
 
 
 def test_the_face_imports_no_page():

@@ -29,8 +29,8 @@ class JointSag(Page):
     }
     units = {"sag": "rad/m"}
     seen_at = (("", "tip"),)
-    SOFTEST = 0.1
-    """Turn for each metre, rad, from which no weight does it: a hobby servo under 2 N gives 20 mrad at 0.1 m."""
+    SOFTEST = 1.0
+    """Turn for each metre, rad, from which no weight does it: a hobby servo of 5 N m/rad gives 1 under 5 N."""
     bounds: ClassVar[Mapping[str, tuple[float, float]]] = {"sag": (-SOFTEST, SOFTEST)}
 
     def signature(self, view: ArmView, site: str, shape: Shape) -> Signature:

@@ -10,7 +10,7 @@ from sher3_static.readings import Readings
 WEIGHT = np.array([0.0, 0.0, -9.81])
 
 
-STIFFNESS = {"j2": 2e4, "j3": 2e4, "j5": 2e3}
+STIFFNESS = {"j2": 2e4, "j3": 2e4, "j5": 5e3}
 """N m/rad: a wrist carries less, on smaller gears."""
 
 
