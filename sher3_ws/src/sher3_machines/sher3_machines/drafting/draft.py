@@ -15,6 +15,7 @@ from sher3_machines.drafting.echoes import measured
 from sher3_machines.drafting.guesses import (
     NAMED,
     clock_of,
+    comes_to_rest,
     count_of,
     period_of,
     position_unit,
@@ -50,8 +51,6 @@ MOST_GEARED = 1e5
 """Ratio beyond which two columns are not two encoders of one axis."""
 FOLLOWS = 0.9
 """Correlation of two encoders below which one does not move with the other: a held axis."""
-DYING = 0.5
-"""Swing of the last third of a record over that of the first one below which its body comes to rest."""
 STEPPED = 0.1
 """Share of the samples up to which what a servo is told changes in steps."""
 LISTED = 12
@@ -234,8 +233,7 @@ def _axis(
 
 def _let_go(axis: dict[str, Any], x: Array, guesses: list[str]) -> None:
     """Give a body of which only the place (n,) was recorded, and which comes to rest, a mass of one."""
-    swing, ends = np.abs(x - x[-1]), len(x) // 3
-    if axis["command_law"]["kind"] == "none" and swing[-ends:].max() < DYING * swing[:ends].max():
+    if axis["command_law"]["kind"] == "none" and comes_to_rest(x):
         axis["mass"] = 1.0
         guesses.append(
             f"{axis['name']}: let go, because it comes to rest; its mass of 1 is a placeholder: forces are for each kg "

@@ -37,6 +37,8 @@ DECADE = 3e8
 """Seconds that a record covers at most: a counter may grow through `EPOCH`, and does so from nothing."""
 USUAL_RATES = (5.0, 20_000.0)
 """Rates, Hz, between which a clock is believed: of servo loops, and of slow loggers."""
+DYING = 0.5
+"""Swing of the last third of a record over that of the first one below which its body comes to rest."""
 GROWING = 0.98
 """Share of the steps of a clock that do not run backwards: logs that were cut together have a few that do."""
 EVEN = 0.05
@@ -85,6 +87,12 @@ def clock_of(tables: Tables, guesses: list[str]) -> str:
         "`kind: load_cell`, wrenches in orientations `kind: force_sensor`, postures with measured poses `kind: arm`; "
         "there is none of a force over speed or travel, and of a sensor of several components in counts",
     )
+
+
+def comes_to_rest(x: Array) -> bool:
+    """Return whether the last third of a record (n,) stays nearer to its end than the first third."""
+    swing, third = np.abs(x - x[-1]), len(x) // 3
+    return bool(swing[-third:].max() < DYING * swing[:third].max())
 
 
 def grows(x: Array) -> bool:

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from sher3_diagnosis.channel import Array
 
-from sher3_machines.drafting.guesses import evenly, grows
+from sher3_machines.drafting.guesses import comes_to_rest, evenly, grows
 from sher3_machines.drafting.names import bare_and_unit
 from sher3_machines.errors import MachineError
 from sher3_machines.intake.mending.motion import AGREES, FOLLOWS, speed_of, speed_ratio
@@ -39,8 +39,8 @@ AS_FAR = 1.25
 """Travel of one over that of the other from which a place is not told another one: a voltage, of a speed."""
 CROSSINGS = 3
 """Times that a body which is let go goes through its place of rest at least: a cooling oven does not."""
-CLEAR, DYING = 0.2, 0.5
-"""Share of the largest swing that counts as a side, and of the first swing from which the last one is at rest."""
+CLEAR = 0.2
+"""Share of the largest swing that counts as a side."""
 TINY = 1e-300
 
 Place = tuple[str, int | None]
@@ -127,9 +127,9 @@ def _left(x: Array, y: Array) -> tuple[float, float]:
 
 def _swings_to_rest(x: Array) -> bool:
     """Return whether a column (n,) crosses its last value again and again, and less far at last."""
-    off, third = x - np.median(x[-len(x) // 10 :]), len(x) // 3
+    off = x - np.median(x[-len(x) // 10 :])
     clear = np.sign(off[np.abs(off) > CLEAR * np.abs(off).max()])
-    return int(np.sum(np.diff(clear) != 0.0)) >= CROSSINGS and bool(np.ptp(off[-third:]) < DYING * np.ptp(off[:third]))
+    return int(np.sum(np.diff(clear) != 0.0)) >= CROSSINGS and comes_to_rest(x)
 
 
 def named_by_blocks(tables: Tables, rate: float | None, joints: int, guesses: list[str]) -> dict[Place, str]:
