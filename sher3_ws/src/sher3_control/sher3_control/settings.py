@@ -210,8 +210,8 @@ class SupervisorSettings(Settings):
         hand_way: low pass on what sensor and drives feel together along one way [s], and the change of it that is too
             much [N]: six times its noise of 13 mN.
         hand_arm: lever at which a torque counts as a force [m]: at this arm torques of healthy running come as near to
-            the limits as its forces. At 15 mm their noise along one way stopped a healthy robot in half an hour; at 20
-            mm a sensor turned by 20 degrees is noticed after 0.16 mm (0.03).
+            the limits as its forces. At 15 mm their noise along one way stopped a healthy robot in half an hour. A
+            sensor turned by 20 degrees is noticed after 0.03 mm at 15 mm, 0.09 at 17.5 and 0.16 at 20 (four seeds).
         hand_least: hand that the drives feel for certain behind `hand_notice` [N]: 3.5 times their noise there, and
             below the dead band of the law.
         hand_notice: low pass on what the drives feel of a hand [s].
