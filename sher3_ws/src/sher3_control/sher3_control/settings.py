@@ -208,7 +208,8 @@ class SupervisorSettings(Settings):
         hand_level: what may be taken for granted [N]: the weight of 20 g that the robot file does not know, or a sensor
             that drifts by as much after its tare.
         hand_way: low pass on what sensor and drives feel together along one way [s], and the change of it that is too
-            much [N]: six times its noise of 13 mN.
+            much [N]: 3.3 times its noise along z, 24 mN, and eight times that across.
+        hand_late: how far apart sensor and drives may feel a hand that comes as a way begins [s]; measured 11 ms.
         hand_arm: lever at which a torque counts as a force [m]: at this arm torques of healthy running come as near to
             the limits as its forces. At 15 mm their noise along one way stopped a healthy robot in half an hour. A
             sensor turned by 20 degrees is noticed after 0.03 mm at 15 mm, 0.09 at 17.5 and 0.16 at 20 (four seeds).
@@ -243,6 +244,7 @@ class SupervisorSettings(Settings):
     hand_settling: Seconds = 0.36
     hand_level: Force = 0.2
     hand_way: tuple[Seconds, Force] = (0.8, 0.08)
+    hand_late: Seconds = 0.016
     hand_arm: Annotated[Number, Field(gt=0.0, le=1.0)] = 0.0175
     hand_least: Force = 0.07
     hand_notice: Seconds = 0.25

@@ -72,8 +72,8 @@ HAZARDS = (
          "force to and fro every other tick", FALSE_FORCE),
         "beside a true hand a false force of 0.2 N and less, or below 12 % of the hand, that was there when the axes "
         "last turned round: 0.2 mm/s more, since the drives know a level no better: 20 g on the tool, and what "
-        "friction in the screws holds, look the same; a gain that grows by 10 % a second under 0.6 N: 0.22 mm further "
-        "along the hand, by 5 % 0.26 mm, told by its size; a sensor turned by 10 degrees as a hand comes "
+        "friction in the screws holds, look the same; a gain that grows by 10 % a second under 0.6 N: 0.24 mm further "
+        "along the hand, by 5 % 0.27 mm, told by its size; a sensor turned by 10 degrees as a hand comes "
         "at once: 67 um sideways on 1.5 mm (`python bench/slow_forces.py`); without a hand "
         "0.2 to 0.9 N are noticed so late that the travel near tissue is beyond the budget of 25 um, since a leg's "
         "force has a noise of 0.17 N and a light hand takes time: 102 um where 0.4 N leave just after enabling "

@@ -97,7 +97,7 @@ class HandDetector(PlainDetector):
         self._lags = np.array([*lags, self._settings.hand_memory])[:, None]
         self._limits = np.array([*limits, self._settings.hand_level])[:, None]
         lag, self._way_limit = self._settings.hand_way
-        self._way = OneWay(lag, self._settings.hand_memory)
+        self._way, self._late = OneWay(lag, self._settings.hand_memory), self._settings.hand_late / lag
         self._force_deadband, self._torque_deadband = law.force_deadband, law.torque_deadband
         self._reach = np.repeat((1.0, self._settings.hand_reach), 3)
         self._nothing = self._found = self._worst = Finding(Reason.HAND_DOUBTFUL, 0.0, min(limits), "N", "force sensor")
@@ -196,12 +196,12 @@ class HandDetector(PlainDetector):
         self._tell(sizes(self._quick), limits)
 
     def _compare(self, step: float, along: Array) -> None:
-        """Judge the sum as a change against its mean, that mean, and what changed along the way (2, 5)."""
+        """Judge the sum as a change against its mean, that mean, and what changed along the way (3, 5)."""
         if not self._settled:
             self._quick, self._settled = np.tile(self._slow, (len(self._quick), 1)), True
-        doubt, (strange, hand) = sizes(np.vstack([self._quick - self._slow, self._slow])), sizes(along)
+        doubt, (strange, hand, came) = sizes(np.vstack([self._quick - self._slow, self._slow])), sizes(along)
         limits = self._limits + self._settings.hand_share * self._both
-        way = self._way_limit + self._settings.hand_share * hand
+        way = self._way_limit + self._settings.hand_share * hand + self._late * came
         self._tell(np.vstack([doubt, strange]), np.vstack([limits, way]))
         self._blind = max(0.0, self._blind - step)
 

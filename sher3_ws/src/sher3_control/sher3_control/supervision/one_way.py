@@ -35,6 +35,7 @@ class OneWay:
     def begin(self) -> None:
         """Forget all: the drives have just got their power, or are about to."""
         self._age, self._whole, self._means, self._first = 0.0, 0.0, np.zeros((2, 0)), np.zeros((2, 0))
+        self._before = self._came = np.zeros(0)
         self._places = self._start = self._sense = np.zeros(0)
 
     def follow(self, step: float, felt: Array, held: Array, joints: Array, moves: bool) -> Array:
@@ -48,20 +49,27 @@ class OneWay:
             moves: whether the law moves the tip.
 
         Returns:
-            By how much the sum, and by how much what the drives hold, changed along the way (2, 5) [N]; zero while
-            nothing moves, and before a way has a mean.
+            By how much the sum, and by how much what the drives hold, changed along the way, and how much of a hand
+            came while its first mean was taken (3, 5) [N]. Zero while nothing moves; the changes are zero before a way
+            has a mean.
         """
         now = np.array([felt + held, held])
         if self._whole == 0.0:
             self._means, self._places, self._start, self._sense = now, joints, joints, np.zeros(len(joints))
+            self._before = held
         self._whole += step
+        if self._turned_round(joints):
+            self._age, self._before = 0.0, self._means[1]
+        else:
+            self._age += step
         self._means = self._means + min(1.0, step / min(self._lag, self._whole)) * (now - self._means)
-        self._age = 0.0 if self._turned_round(joints) else self._age + step
         if self._age < self._lag:
-            self._first = self._means
+            self._first, self._came = self._means, self._means[1] - self._before
         elif not moves:
-            self._first = self._first + min(1.0, step / self._memory) * (self._means - self._first)
-        return (self._means - self._first) * moves
+            forgotten = min(1.0, step / self._memory)
+            self._first = self._first + forgotten * (self._means - self._first)
+            self._came = (1.0 - forgotten) * self._came
+        return np.vstack([self._means - self._first, self._came]) * moves
 
     def _turned_round(self, joints: Array) -> bool:
         """Return whether an axis came back by its play, or the tool turned too far; a new way begins then."""
