@@ -140,7 +140,7 @@ def test_the_loop_in_one_process_ends_as_one_and_stops_the_robot(robot):
 
 def test_a_fault_is_said_as_it_happens_and_is_the_exit_code_unless_it_was_recovered(robot, domain):
     """Two nodes may not publish the pedal: the line says what to start instead."""
-    running = robot()
+    running = robot("--layout", "composed")
     running.ready()
     with subprocess.Popen(
         [sys.executable, "-c", STRANGER], env=child_environment(ROS_DOMAIN_ID=str(domain))
