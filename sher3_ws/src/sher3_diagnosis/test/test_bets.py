@@ -42,6 +42,12 @@ def test_two_causes_of_one_place_by_hand():
     assert sum(both.values()) == pytest.approx(1.0 - 0.1 * 0.2)
 
 
+def test_what_two_causes_leave_is_doubted_once():
+    """0.4 and 0.3 for a foreign law: the remainder is one, and its odds are 0.4, not 1 - 0.6 * 0.7."""
+    both = dict(shares([item(0.6, outside=0.4), item(0.5, 0.2, outside=0.3)]))
+    assert both == pytest.approx({(0, 0): 0.6 * 5 / 7, (0, 1): 0.6 * 2 / 7})
+
+
 def test_the_best_explanation_is_listed_however_improbable_and_the_rest_is_counted():
     answers = [Answer(answer="outside_library", probability=0.994), Answer(causes=[cause()], probability=0.003)]
     found = placed(WHERE, [*answers, Answer(causes=[cause("axis_skew")], probability=0.002)])

@@ -1,7 +1,9 @@
 """What one would bet at every place with a gap: answers whose probabilities add up to one, the best explanation kept.
 
 The causes of a place answer for it together: it is one of the library's if none of them is foreign, and none where none
-of them is a cause of its own. They are taken to be judged independently.
+of them is a cause of its own. What they leave is one remainder, so whether it is a foreign law's is one question, which
+the most doubtful of them answers; which effect each of them is, is judged of each by itself. So a place is more likely
+foreign than not only where one of its causes is, and a headline does not contradict the status.
 """
 
 from __future__ import annotations
@@ -48,9 +50,9 @@ def place_of(finding: Finding, items: Sequence[Judged], channel: Channel, where:
     answers = [
         _bet(finding, causes, choice, p, channel, quantified=p >= QUANTIFIED or p == best) for choice, p in listed
     ]
-    outside = _plain(OUTSIDE, 1.0 - prod(1.0 - j.outside for j in causes))
+    outside = _plain(OUTSIDE, max(j.outside for j in causes))
     typicalities = [j.typicality for j in causes if j.typicality is not None]
-    nothing = _plain(NO_GAP, prod(j.no_gap for j in causes))
+    nothing = _plain(NO_GAP, _one_question(causes) * prod(j.no_gap for j in causes))
     return placed(where, [*answers, outside, nothing], min(typicalities, default=None))
 
 
@@ -86,11 +88,18 @@ def placed(where: Where, answers: Iterable[Answer], typicality: float | None = N
 
 def shares(causes: Sequence[Judged]) -> Iterator[tuple[Choice, float]]:
     """Yield the combinations of candidates with their probabilities: the most probable, and all worth listing."""
+    once = _one_question(causes)
     options = [[(NONE, j.no_gap), *enumerate(j.effects)] for j in causes]
-    made = [(tuple(k for k, _ in c), prod(p for _, p in c)) for c in product(*options)]
+    made = [(tuple(k for k, _ in c), once * prod(p for _, p in c)) for c in product(*options)]
     some = sorted((x for x in made if set(x[0]) != {NONE}), key=lambda x: -x[1])
     yield some[0]
     yield from (x for x in some[1:] if x[1] >= LISTED)
+
+
+def _one_question(causes: Sequence[Judged]) -> float:
+    """Return the odds that none of the causes of a place is foreign, over the product of each one's own."""
+    none = [1.0 - j.outside for j in causes]
+    return min(none) / prod(none) if all(none) else 0.0
 
 
 def _plain(answer: str, probability: float) -> Answer:
