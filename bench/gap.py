@@ -1,6 +1,7 @@
 """Seconds of a diagnosis: a case of ten 8 s runs, and what one more effect, run or actuator costs.
 
-`nine runs of one core` is the processor time of a nine-run case, which other work on the machine does not lengthen.
+`nine runs of one core` is the processor time of a nine-run case, and `command` that of `sher3 gap diagnose` for it with
+its start and its report: times that other work on the machine lengthens little.
 
 `python bench/gap.py [--json]`. The robot of the case rubs on one axis, which most of the search is spent on. Numba has
 compiled before the clock starts.
@@ -10,6 +11,9 @@ from __future__ import annotations
 
 import argparse
 import json
+import resource
+import subprocess
+import sys
 import time
 from collections.abc import Sequence
 from pathlib import Path
@@ -54,6 +58,14 @@ def processor_seconds(case: Path) -> float:
     return time.process_time() - started
 
 
+def command_seconds(case: Path) -> float:
+    """Return the processor seconds, in its own code, of the command that diagnoses a case and writes the report."""
+    before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
+    command = [sys.executable, "-m", "sher3_cli", "gap", "diagnose", str(case), "--out", str(case / "answer")]
+    subprocess.run(command, check=True, capture_output=True)
+    return resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
+
+
 def measure() -> dict[str, float]:
     """Return the figures, seconds each."""
     friction = [plants()["coulomb_friction"](a, force=1.0) for a in RUBBING]
@@ -69,6 +81,7 @@ def measure() -> dict[str, float]:
         return {
             "ten_runs_of_8_s": ten,
             "nine_runs_of_one_core": processor_seconds(nine),
+            "command": command_seconds(nine),
             "healthy": seconds(healthy),
             "per_effect": (ten - fewer) / len(LEFT_OUT),
             "per_run": (ten - six) / 4,

@@ -13,14 +13,12 @@ import sher3.gap as gap
 import yaml
 from browser import CHROMIUM, browse
 from invoking import invoke
-from matplotlib import rc_context
-from matplotlib.figure import Figure
 from sher3_bags import Run, stream
 from sher3_bags.figures.analysis import analyse
 from sher3_bags.figures.report import Block
 from sher3_common.samples import JointSample, TextSample
 from sher3_description import load_robot
-from sher3_diagnosis.report.drawing import STYLE, to_svg
+from sher3_diagnosis.report.drawing import Line, Panel, picture
 from sher3_gap.report.drawing import robot_drawing
 from sher3_gap_cli.app import app
 from sher3_view import film_of, write_page
@@ -92,10 +90,7 @@ def film(folder: Path) -> None:
 
 def drawings(folder: Path) -> None:
     """Single pictures, as pages take them in."""
-    with rc_context(STYLE):
-        figure = Figure()
-        figure.subplots().set_title(EVIL)
-        svg = to_svg(figure, EVIL)
+    svg = picture([Panel(EVIL, 40, [Line(TIME[:3], POSITION[:3], "#000", EVIL)], band=(1.0, EVIL))], EVIL, EVIL)
     parts = [svg, robot_drawing(load_robot(), [EVIL]), plot_svg(TIME[:3], POSITION[:3], EVIL, EVIL, "#000")]
     (folder / "drawings.html").write_text("<!doctype html><meta charset=utf-8>" + "".join(parts))
 
@@ -103,8 +98,8 @@ def drawings(folder: Path) -> None:
 def test_a_picture_has_no_attribute_of_a_names_making(tmp_path):
     drawings(tmp_path)
     _, *pictures = (tmp_path / "drawings.html").read_text().split("<svg ")
-    for picture in pictures:
-        root = ElementTree.fromstring("<svg " + picture.split("</svg>")[0] + "</svg>")
+    for text in pictures:
+        root = ElementTree.fromstring("<svg " + text.split("</svg>")[0] + "</svg>")
         assert not [part for part in root.iter() if "onload" in part.attrib or part.tag.endswith("script")]
 
 

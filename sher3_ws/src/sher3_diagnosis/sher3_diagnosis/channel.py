@@ -76,7 +76,7 @@ class Residual:
 
     def centred(self, values: Array) -> Array:
         """Subtract the free share of the mean from (n, ...) values of one run."""
-        return values - self.free_mean * values.mean(axis=0) if self.free_mean else values
+        return values - self.free_mean * (values.sum(axis=0) / len(values)) if self.free_mean else values
 
     def wholly_determined(self) -> Residual:
         """Return the residual with only those samples that determine all of their components."""

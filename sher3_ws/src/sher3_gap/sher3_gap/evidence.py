@@ -32,12 +32,14 @@ class SherEvidence(Evidence):
         robot: the nominal model.
         twins: the nominal model driven as each run was.
         timing: what the echo tells of the commands' timing; None where it was not recorded.
+        tolerances: deviations within tolerance one by one, which `nuisance` has in principal directions.
     """
 
     runs: Sequence[RunSignals]
     robot: Robot
     twins: Sequence[RunSignals]
     timing: Timing | None
+    tolerances: Sequence[Tolerance]
 
     def view(self, run: int) -> SherView:
         """Return what effects see of a run."""
@@ -73,6 +75,7 @@ def gather(runs: Sequence[RunSignals], robot: Robot) -> SherEvidence:
         for run, r, f, d in zip(runs, residuals, own, demands, strict=True)
     ]
     data = Standardised(views, residuals, own)
+    tolerances = list(tolerated(data, robot))
     return SherEvidence(
         excitations=[run.excitation for run in runs],
         data=data,
@@ -80,11 +83,12 @@ def gather(runs: Sequence[RunSignals], robot: Robot) -> SherEvidence:
         places=PLACES,
         rotary=ROTARY_AXES,
         counts={a: x.motor_encoder for a, x in zip(ACTUATORS, robot.actuators, strict=True)},
-        nuisance=as_built(data, list(tolerated(data, robot))),
+        nuisance=as_built(data, tolerances),
         runs=list(runs),
         robot=robot,
         twins=[unshifted for unshifted, *_ in twins],
         timing=timing,
+        tolerances=tolerances,
     )
 
 

@@ -13,10 +13,11 @@ from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.finding import Finding
 from sher3_diagnosis.machine import Diagnosis
 from sher3_diagnosis.quantify.closure import residual_after
-from sher3_diagnosis.report.drawing import STYLE
 from sher3_diagnosis.report.traces import traces
 from sher3_diagnosis.words import place, words
 
+STYLE: dict[Any, Any] = {"font.size": 9, "axes.grid": True, "grid.color": "#e5e7eb", "legend.frameon": False}
+"""Settings of Matplotlib in force while a figure is made."""
 MOST = 4
 """Places that a figure shows at most."""
 PAPER = "background:#fff;color:#1f2937;padding:4px 12px;border-radius:8px;max-width:900px"
@@ -69,8 +70,7 @@ def html_of(
     diagnosis: Diagnosis[Any], headline: str, lists: Mapping[str, Sequence[str]], folded: Mapping[str, Sequence[str]]
 ) -> str:
     """Return a diagnosis as HTML: headline, lists under their titles, the first picture, and lists that are folded."""
-    with rc_context(STYLE):
-        drawn = traces(diagnosis, diagnosis.machine.reporter())[:1]
+    drawn = traces(diagnosis, diagnosis.machine.reporter())[:1]
     shown = [f"<p>{escape(title)}</p>{_items(texts)}" for title, texts in lists.items() if texts]
     shown += [f"<figure>{trace.svg}</figure>" for trace in drawn]
     shown += [

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from itertools import accumulate, pairwise
 
 import numpy as np
@@ -108,19 +108,23 @@ def fit(data: Standardised, terms: Sequence[Term]) -> Fit:
 
 def connected(terms: Sequence[Term]) -> list[list[int]]:
     """Return the indices of terms in groups that share channels."""
-    if len({t.channels for t in terms}) == 1:
-        return [list(range(len(terms)))]
+    return _connected(tuple([t.channels for t in terms]))
+
+
+@lru_cache(maxsize=1000)
+def _connected(shown: tuple[frozenset[Channel], ...]) -> list[list[int]]:
+    """Return the indices of sets of channels in groups that share some; a search asks for the same many times."""
     group: dict[Channel, list[int]] = {}
     apart: list[list[int]] = []
-    for i, term in enumerate(terms):
-        touching = {id(found): found for c in term.channels if (found := group.get(c)) is not None}
+    for i, channels in enumerate(shown):
+        touching = {id(found): found for c in channels if (found := group.get(c)) is not None}
         first, *others = touching.values() if touching else ([],)
         for members in others:
             first += members
-            group.update((c, first) for k in members for c in terms[k].channels)
+            group.update((c, first) for k in members for c in shown[k])
         first.append(i)
-        group.update((c, first) for c in term.channels)
-        apart += [] if term.channels else [first]
+        group.update((c, first) for c in channels)
+        apart += [] if channels else [first]
     return [sorted(members) for members in (*apart, *{id(x): x for x in group.values()}.values())]
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from functools import cached_property
 from typing import Any
 
@@ -20,21 +20,31 @@ class Standardised:
         trails: per channel the terms of the last fit, each with its blocks and the products so far; by `fit.gram`.
     """
 
-    def __init__(self, views: Sequence[Any], residuals: Sequence[Residuals], floors: Sequence[Floors]) -> None:
+    def __init__(
+        self,
+        views: Sequence[Any],
+        residuals: Sequence[Residuals],
+        floors: Sequence[Floors],
+        target: Sequence[dict[Channel, Array]] | None = None,
+    ) -> None:
+        """Take runs; `target` is what is looked at in place of their residuals."""
         self.views = list(views)
         self.residuals = list(residuals)
         self.floors = list(floors)
         self.fits: dict[tuple[int, ...], Any] = {}
         self.trails: dict[Channel, list[Any]] = {}
-        self.target: list[dict[Channel, Array]] = [
-            {c: self.flat(r, c, x.values) for c, x in res.items() if x.ok.any()} for r, res in enumerate(self.residuals)
-        ]
+        self.target = list(target or self._targets())
+
+    def _targets(self) -> Iterator[dict[Channel, Array]]:
+        for r, residuals in enumerate(self.residuals):
+            yield {c: self.flat(r, c, x.values) for c, x in residuals.items() if x.ok.any()}
 
     def with_runs(self, more: Standardised, target: Sequence[dict[Channel, Array]]) -> Standardised:
         """Return these runs and others, of which something else than their residuals is looked at, (N,) over floors."""
-        out = Standardised([*self.views, *more.views], [*self.residuals, *more.residuals], [*self.floors, *more.floors])
-        out.target[len(self.target) :] = target
-        return out
+        floors = [*self.floors, *more.floors]
+        return Standardised(
+            [*self.views, *more.views], [*self.residuals, *more.residuals], floors, [*self.target, *target]
+        )
 
     def flat(self, run: int, channel: Channel, values: Array) -> Array:
         """Whiten (g, d) or (g, d, p) values of a channel and flatten the samples that count -> (N,) or (N, p)."""

@@ -40,6 +40,10 @@ class Tolerance:
         """Standard deviation of each coefficient, (p,)."""
         return np.array([limit / SIGMAS for limit, _ in self.limits.values()])
 
+    def with_runs(self, more: Tolerance) -> Tolerance:
+        """Return the deviation on its runs and on those of another evaluation."""
+        return Tolerance(self.term.with_runs(more.term), self.limits)
+
 
 class AsBuilt(Effect):
     """Deviations of a healthy machine that show on the same channels, in their principal directions."""

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.special import binom
 
 from sher3_diagnosis.channel import Array
 from sher3_diagnosis.localise.floors import GAUSSIAN, UNIFORM
@@ -44,7 +44,7 @@ def noise_of(readings: Array, resolution: float = 0.0) -> float:
     The noise of a fifth difference has the sum of squares of the binomial coefficients in power; in a slow record it
     holds motion too, which the highest frequencies do not.
     """
-    power = float(np.sum(binom(ORDER, np.arange(ORDER + 1)) ** 2))
+    power = math.comb(2 * ORDER, ORDER)
     bend = np.diff(readings, ORDER)
     size = GAUSSIAN * float(np.median(np.abs(bend))) / np.sqrt(power)
     return max(min(size, noise_at_the_top(readings)), resolution / UNIFORM)
@@ -56,6 +56,7 @@ def noise_at_the_top(readings: Array) -> float:
     if n < SHORTEST:
         return np.inf
     window = np.hanning(n)
-    line = np.polyval(np.polyfit(np.arange(n), readings, 1), np.arange(n))
-    power = np.abs(np.fft.rfft((readings - line) * window)) ** 2 / np.sum(window**2)
+    clock, moved = np.arange(n) - 0.5 * (n - 1), readings - readings.mean()
+    line = (clock @ moved) / (clock @ clock) * clock
+    power = np.abs(np.fft.rfft((moved - line) * window)) ** 2 / np.sum(window**2)
     return float(np.sqrt(np.mean(power[int(TOP * len(power)) :])))

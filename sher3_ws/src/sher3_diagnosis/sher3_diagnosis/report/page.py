@@ -5,13 +5,11 @@ from __future__ import annotations
 from functools import cache
 
 import jinja2
-from matplotlib import rc_context
 
 from sher3_diagnosis.discover.formula import Discovery
 from sher3_diagnosis.machine import Diagnosis
 from sher3_diagnosis.report.causes import cause_cards
 from sher3_diagnosis.report.chain import chain
-from sher3_diagnosis.report.drawing import STYLE
 from sher3_diagnosis.report.found import closures, found_rows
 from sher3_diagnosis.report.odds import answered, sizes
 from sher3_diagnosis.report.regimes import regimes
@@ -46,10 +44,8 @@ def render(
         in_memory: whether the case is in no folder: what goes on from here is a method of the answer.
         options: of the diagnosis, as in `command`.
     """
-    with rc_context(STYLE):
-        return _template().render(
-            found=_formula(found), **_sections(diagnosis, title, (case or title, folder, options), in_memory)
-        )
+    sections = _sections(diagnosis, title, (case or title, folder, options), in_memory)
+    return _template().render(found=_formula(found), **sections)
 
 
 @cache

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from matplotlib.axes import Axes
 
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.evidence import Evidence
@@ -14,7 +13,7 @@ from sher3_diagnosis.finding import Finding
 from sher3_diagnosis.localise.gaps import PARTS
 from sher3_diagnosis.machine import Diagnosis
 from sher3_diagnosis.quantify.closure import residual_after
-from sher3_diagnosis.report.drawing import ABOVE, CORRECTED, FLOOR, MARGINS, NOMINAL, REAL, figure, to_svg
+from sher3_diagnosis.report.drawing import CORRECTED, NOMINAL, REAL, Line, Panel, picture
 from sher3_diagnosis.reporter import Reporter, Trace
 from sher3_diagnosis.words import place, words
 
@@ -151,40 +150,26 @@ def _component(values: Array, floor: Array) -> int:
 
 
 def _draw(lines: _Lines, title: str, abscissa: str, corrected: str) -> str:
-    made, (top, bottom) = figure(2, 4.1, sharex=True, height_ratios=[1.5, 1.0])
-    _draw_output(top, lines, corrected)
-    _draw_residual(bottom, lines)
-    bottom.set_xlabel(abscissa)
-    for ax in (top, bottom):
-        ax.legend(**ABOVE)
-        ax.margins(**MARGINS)
-    return to_svg(made, title)
-
-
-def _draw_output(ax: Axes, lines: _Lines, corrected: str) -> None:
     scale, prefix = scale_of(lines.real)
-    _line(ax, lines.time, scale * lines.real, REAL, "real", 1.3)
-    _line(ax, lines.time, scale * lines.nominal, NOMINAL, "nominal model", 1.1)
-    if lines.changed:
-        _line(ax, lines.time, scale * lines.corrected, CORRECTED, corrected, 1.1)
-    ax.set_ylabel(f"{lines.name} [{prefix}{lines.unit}]")
+    shown = [(lines.real, REAL, "real"), (lines.nominal, NOMINAL, "nominal model")]
+    shown += [(lines.corrected, CORRECTED, corrected)] if lines.changed else []
+    output = [_line(lines.time, scale * y, colour, label) for y, colour, label in shown]
+    finer, small = scale_of(lines.real - lines.nominal)
+    shown = [(lines.nominal, NOMINAL, "nominal residual")]
+    shown += [(lines.corrected, CORRECTED, "residual left")] if lines.changed else []
+    residual = [_line(lines.time, finer * (lines.real - y), colour, label) for y, colour, label in shown]
+    panels = [
+        Panel(f"{lines.name} [{prefix}{lines.unit}]", 138, output),
+        Panel(f"residual [{small}{lines.unit}]", 92, residual, band=(2 * finer * lines.floor, "± 2 floor")),
+    ]
+    return picture(panels, abscissa, title)
 
 
-def _draw_residual(ax: Axes, lines: _Lines) -> None:
-    before, left = lines.real - lines.nominal, lines.real - lines.corrected
-    scale, prefix = scale_of(before)
-    ax.axhspan(-2 * scale * lines.floor, 2 * scale * lines.floor, color=FLOOR, alpha=0.25, lw=0, label="± 2 floor")
-    _line(ax, lines.time, scale * before, NOMINAL, "nominal residual", 0.9)
-    if lines.changed:
-        _line(ax, lines.time, scale * left, CORRECTED, "residual left", 0.9)
-    ax.set_ylabel(f"residual [{prefix}{lines.unit}]")
-
-
-def _line(ax: Axes, time: Array, y: Array, color: str, label: str, width: float) -> None:
-    """Draw a line that breaks where samples are missing."""
+def _line(time: Array, y: Array, colour: str, label: str) -> Line:
+    """Return a line that breaks where samples are missing."""
     steps = np.diff(time)
     holes = np.flatnonzero(steps > HOLE * np.median(steps)) + 1 if len(steps) else np.array([], dtype=int)
-    ax.plot(np.insert(time, holes, np.nan), np.insert(y, holes, np.nan), color=color, lw=width, label=label)
+    return Line(np.insert(time, holes, np.nan), np.insert(y, holes, np.nan), colour, label)
 
 
 def scale_of(y: Array) -> tuple[float, str]:

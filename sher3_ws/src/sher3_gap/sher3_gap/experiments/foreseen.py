@@ -69,8 +69,9 @@ def temperature_of(evidence: SherEvidence) -> float:
 
 def _as_built(evidence: SherEvidence, more: Standardised) -> Sequence[Term]:
     """Return the deviations within tolerance that a case and further runs show together: new places show more."""
-    both = evidence.data.with_runs(more, more.target)
-    return as_built(both, list(tolerated(both, evidence.robot)))
+    there = tolerated(more, evidence.robot)
+    members = [t.with_runs(m) for t, m in zip(evidence.tolerances, there, strict=True)]
+    return as_built(evidence.data.with_runs(more, more.target), members)
 
 
 def _warmed(evidence: SherEvidence, floor: Floors, temperature: float) -> Standardised:

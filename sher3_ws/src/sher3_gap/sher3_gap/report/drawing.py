@@ -6,15 +6,20 @@ from collections.abc import Collection
 from html import escape
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 from sher3_description import ACTUATORS, Robot
 from sher3_diagnosis.channel import Array
 from sher3_kinematics.kernel import delta_forward, kernel_parameters
 
 WIDTH, HEIGHT, MARGIN = 420, 300, 30
 """Size and margin of the picture, px."""
-FROM = Rotation.from_euler("zx", [-24.0, -72.0], degrees=True)
-"""Turns the base frame so that the robot is seen from its side, a little from above."""
+ABOUT, DOWN = np.radians(-24.0), np.radians(-72.0)
+FROM = np.array(
+    [
+        [np.cos(ABOUT), -np.sin(ABOUT), 0.0],
+        [np.sin(ABOUT) * np.cos(DOWN), np.cos(ABOUT) * np.cos(DOWN), -np.sin(DOWN)],
+    ]
+)
+"""Abscissa and ordinate of the picture in the base frame: the robot from its side, a little from above."""
 RAIL = (-0.045, 0.045)
 """Ends of a rail about its slider, m."""
 LIT, PLAIN = "#c2412d", "#64748b"
@@ -26,7 +31,7 @@ Line = tuple[Array, float]
 def robot_drawing(robot: Robot, lit: Collection[str]) -> str:
     """Return the drawing as SVG; `lit` are actuators, `tip`, `force_sensor` or `all`."""
     parts = _parts(robot)
-    flat = {name: [(FROM.apply(p)[:, :2], w) for p, w in lines] for name, lines in parts.items()}
+    flat = {name: [(p @ FROM.T, w) for p, w in lines] for name, lines in parts.items()}
     every = np.vstack([p for lines in flat.values() for p, _ in lines])
     low, high = every.min(axis=0), every.max(axis=0)
     scale = float(min((WIDTH - 2 * MARGIN) / (high - low)[0], (HEIGHT - 2 * MARGIN) / (high - low)[1]))

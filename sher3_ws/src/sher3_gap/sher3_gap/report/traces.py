@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 from sher3_description import ACTUATORS
-from sher3_diagnosis.report.drawing import ABOVE, CORRECTED, MARGINS, NOMINAL, REAL, figure, to_svg
+from sher3_diagnosis.report.drawing import CORRECTED, NOMINAL, REAL, Line, Panel, picture, stepped
 from sher3_diagnosis.report.traces import scale_of
 from sher3_diagnosis.reporter import Trace
 from sher3_diagnosis.verdict import Cause
@@ -36,20 +36,16 @@ def free_run_trace(evidence: SherEvidence, causes: Sequence[Cause]) -> Trace | N
     corrected = tip_error(run, driven_as(run, evidence.robot, effects=to_effects(causes, evidence.robot)))
     assert run.tracker_index is not None
     clock = run.stage_clock[run.tracker_index][: len(corrected)]
-    made, (ax,) = figure(1, 2.5)
-    for error, color, label in (
+    lines = []
+    for error, colour, label in (
         (nominal[run.name], NOMINAL, "nominal model"),
         (corrected, CORRECTED, "with the causes"),
     ):
         distance = 1e6 * np.linalg.norm(error, axis=1)
-        ax.plot(clock, distance, color=color, lw=1.1, label=f"{label}, {np.sqrt(np.mean(distance**2)):.1f} µm rms")
-    ax.set_xlabel("time [s]")
-    ax.set_ylabel("distance from the real tip [µm]")
-    ax.legend(**ABOVE)
-    ax.margins(**MARGINS)
-    ax.set_ylim(bottom=0.0)
+        lines.append(Line(clock, distance, colour, f"{label}, {np.sqrt(np.mean(distance**2)):.1f} µm rms"))
+    panel = Panel("distance from the real tip [µm]", 140, lines)
     caption = f"Run {run.name} ({run.excitation}): both models run freely from the recorded set-points."
-    return Trace("Tip position, end to end", caption, to_svg(made, "tip, free run"))
+    return Trace("Tip position, end to end", caption, picture([panel], "time [s]", "tip, free run"))
 
 
 BEFORE, BEHIND = 12, 22
@@ -75,15 +71,14 @@ def transport_trace(evidence: SherEvidence) -> Trace | None:
     clock = 1e3 * (run.stage_clock[low:high] - run.stage_clock[at])
     nominal = delayed(run.command, 1)[low:high, axis]
     scale, prefix = scale_of(nominal)
-    made, (ax,) = figure(1, 2.6)
-    ax.step(clock, scale * run.echo[low:high, axis], where="pre", color=REAL, lw=1.5, label="demand executed (echo)")
-    ax.step(clock, scale * nominal, where="pre", color=NOMINAL, lw=1.2, label="nominal: command on time")
-    ax.set_xlabel("time [ms]")
+    lines = [
+        stepped(clock, scale * run.echo[low:high, axis], REAL, "demand executed (echo)"),
+        stepped(clock, scale * nominal, NOMINAL, "nominal: command on time"),
+    ]
     unit = "rad/s" if ACTUATORS[axis] in ROTARY_AXES else "m/s"
-    ax.set_ylabel(f"velocity demand [{prefix}{unit}]")
-    ax.legend(loc="best", fontsize=8)
+    panel = Panel(f"velocity demand [{prefix}{unit}]", 140, lines)
     title = f"Transport, {place(ACTUATORS[axis])}"
-    return Trace(title, f"Run {run.name} around its steepest command.", to_svg(made, title))
+    return Trace(title, f"Run {run.name} around its steepest command.", picture([panel], "time [ms]", title))
 
 
 def _steepest(evidence: SherEvidence) -> _Change | None:

@@ -21,6 +21,7 @@ from sher3_effects import to_effects
 from sher3_gap.evidence import SherEvidence
 from sher3_gap.nominal_replay import driven_as
 from sher3_gap.signals import RunSignals
+from sher3_gap.simulate.spline import through
 from sher3_gap.stages.units import LOADED_TIP, TIP
 
 
@@ -89,10 +90,8 @@ def tip_error(run: RunSignals, twin: RunSignals | None) -> Array:
     assert twin is not None and run.tracker_index is not None and twin.tracker_index is not None
     assert run.tracker_position is not None and twin.tracker_position is not None
     ticks = shared_ticks(run, twin)
-    from scipy.interpolate import CubicSpline  # slow to import, and not needed before a case is read
-
-    path = CubicSpline(twin.tracker_index, twin.tracker_position)
-    return run.tracker_position[np.isin(run.tracker_index, ticks)] - path(ticks)
+    path = through(twin.tracker_index, twin.tracker_position, ticks)
+    return run.tracker_position[np.isin(run.tracker_index, ticks)] - path
 
 
 def tip_shift(evidence: SherEvidence, fit: Fit, run: int, ticks: np.ndarray) -> Array:

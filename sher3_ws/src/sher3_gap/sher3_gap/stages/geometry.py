@@ -19,6 +19,7 @@ from sher3_kinematics.kernel import (
     tip_jacobian_into,
     tip_pose_into,
 )
+from sher3_kinematics.kernel.batch import tip_quaternion_batch
 
 from sher3_gap.signals import RAMP_LIMIT, RunSignals
 
@@ -175,10 +176,7 @@ class Geometry:
         rotation, position = self.poses(self.parameters, source[run.tracker_index])
         out, slot = np.zeros((len(run.grid), 6)), run.tracker_slot
         out[slot, :3] = run.tracker_position - position
-        from scipy.spatial.transform import Rotation  # slow to import, and not needed before a case is read
-
-        measured = Rotation.from_quat(run.tracker_rotation)
-        out[slot, 3:] = (measured * Rotation.from_matrix(rotation).inv()).as_rotvec()
+        out[slot, 3:] = turn(tip_quaternion_batch(rotation), run.tracker_rotation)
         return out
 
     def pose_change(self, run: RunSignals, step: float, **changes: float) -> Array:
@@ -193,7 +191,14 @@ class Geometry:
             sides.append(self.poses(self.parameters._replace(**moved), q))
         (r1, p1), (r0, p0) = sides
         linear = (p1 - p0) / (2.0 * step)
-        from scipy.spatial.transform import Rotation  # slow to import, and not needed before a case is read
-
-        angular = (Rotation.from_matrix(r1) * Rotation.from_matrix(r0).inv()).as_rotvec() / (2.0 * step)
+        angular = turn(tip_quaternion_batch(r0), tip_quaternion_batch(r1)) / (2.0 * step)
         return np.hstack([linear, angular])
+
+
+def turn(before: Array, after: Array) -> Array:
+    """Return the rotation vectors (g, 3) in {b} from orientations to others, (g, 4) each: quaternions x y z w."""
+    (u, a), (v, b) = ((q[:, :3], q[:, 3:]) for q in (before, after))
+    part, whole = a * v - b * u + np.cross(u, v), a * b + np.sum(u * v, axis=1, keepdims=True)
+    sine = np.linalg.norm(part, axis=1, keepdims=True)
+    angle = 2.0 * np.arctan2(sine, np.abs(whole))
+    return np.copysign(1.0, whole) * part * np.divide(angle, sine, out=np.full_like(sine, 2.0), where=sine > 0.0)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import json
 from pathlib import Path
 from typing import Annotated, Any
@@ -10,6 +11,9 @@ import typer
 from sher3_common.commands.options import Json
 
 from sher3_gap_cli.options import BAD_INPUT, Library, RobotFile, Trust, case_argument, check_writable, effects, reported
+
+OBJECTS = 50_000
+"""New objects after which Python looks for cycles: at its 700 that takes 6 % of a diagnosis."""
 
 
 def diagnose(
@@ -33,6 +37,7 @@ def diagnose(
 
     Exit codes: 0 every case was answered, 2 a case or option is wrong (one sentence says why).
     """
+    gc.set_threshold(OBJECTS)
     from sher3_diagnosis.judge.costs import Costs
     from sher3_effects import add_library
 
