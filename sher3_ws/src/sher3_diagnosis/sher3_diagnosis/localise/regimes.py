@@ -84,11 +84,8 @@ def _warmth(evidence: Evidence) -> tuple[float, float]:
 
 
 def _after_reversal(speed: Array, limit: float) -> Mask:
-    direction = np.where(np.abs(speed) > limit, np.sign(speed), 0.0)
+    moving = np.flatnonzero(np.abs(speed) > limit)
     out = np.zeros(len(speed), dtype=bool)
-    last = 0.0
-    for k, d in enumerate(direction):
-        if d and last and d != last:
-            out[k : k + JUST_AFTER] = True
-        last = d or last
+    for k in moving[1:][np.diff(np.sign(speed[moving])) != 0.0]:
+        out[k : k + JUST_AFTER] = True
     return out

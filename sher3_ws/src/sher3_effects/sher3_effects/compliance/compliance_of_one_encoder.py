@@ -57,11 +57,12 @@ class ComplianceBehindMotor(BehindMotor):
     def least_shown(self, views: Sequence[AxisView], site: str, hidden: Hidden) -> str:
         """Return the stiffest spring."""
         shapes = [s for s in self.shapes(views, site) if s["damping"] == self.DAMPINGS[1]]
-        paces = [s["frequency"] for s in shapes if hidden.shows(s)]
-        if not paces:
+        fastest_first = sorted(shapes, key=lambda s: -s["frequency"])
+        pace = next((s["frequency"] for s in fastest_first if hidden.shows(s)), None)
+        if pace is None:
             return "no spring would show"
-        stiffness, (position, force) = hidden.mass * (2.0 * np.pi * max(paces)) ** 2, hidden.units
-        return f"a spring below {rounded(stiffness, f'{force}/{position}')} ({max(paces):.2g} Hz) would show"
+        stiffness, (position, force) = hidden.mass * (2.0 * np.pi * pace) ** 2, hidden.units
+        return f"a spring below {rounded(stiffness, f'{force}/{position}')} ({pace:.2g} Hz) would show"
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
         """Return frequency [Hz] and damping, the mass (1,) of the load and the stiffness of its spring."""

@@ -61,8 +61,9 @@ class BacklashBehindMotor(BehindMotor):
 
     def least_shown(self, views: Sequence[AxisView], site: str, hidden: Hidden) -> str:
         """Return the smallest play of a load that rests in its gap."""
-        widths = [s["width"] for s in self.shapes(views, site) if "braking" not in s and hidden.shows(s)]
-        return f"play above {rounded(min(widths), hidden.units[0])} would show" if widths else "no play would show"
+        widths = sorted(s["width"] for s in self.shapes(views, site) if "braking" not in s)
+        least = next((w for w in widths if hidden.shows({"width": w})), None)
+        return f"play above {rounded(least, hidden.units[0])} would show" if least else "no play would show"
 
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
         """Return what the load's mass adds, and for one that rests in the gap what its friction adds."""
@@ -127,9 +128,10 @@ class BacklashBeforeEncoder(Page):
         """Return the smallest play, between a count and the travel."""
         count, travel = hidden.step, max(v.axis(site).travel for v in views)
         widths = np.geomspace(count, max(travel, 2.0 * count), self.TRIED)
-        seen = [w for w in widths if hidden.shows({"force": 0.5 * float(w), "late": 0.0})]
-        least = f"play before it above {rounded(min(seen), hidden.units[0])}" if seen else "no play before it"
-        return f"{least} would show"
+        least = next((w for w in widths if hidden.shows({"force": 0.5 * float(w), "late": 0.0})), None)
+        return (
+            f"{f'play before it above {rounded(least, hidden.units[0])}' if least else 'no play before it'} would show"
+        )
 
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
         """Return minus the play of the lagged reference; nothing is left to fit."""

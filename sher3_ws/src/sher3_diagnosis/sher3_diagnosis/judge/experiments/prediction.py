@@ -7,8 +7,9 @@ of the law's power that differs from robot to robot; so the law is bent by each 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 
@@ -27,13 +28,20 @@ OF_TODAY = ("law", "anything")
 """Evidence that further runs would change in a way that a drawn bend does not tell."""
 
 
-def predicted(found: Fit, terms: Sequence[Term], more: Standardised, level: float) -> list[dict[Channel, Array]]:
+Bend = Callable[[Channel, float], dict[int, Array]]
+"""Factors on a law at a channel per run, (N,), for a share of its power by which it is bent."""
+
+
+def predicted(
+    found: Fit, terms: Sequence[Term], more: Standardised, level: float, bend: Bend | None = None
+) -> list[dict[Channel, Array]]:
     """Return what the terms of a fit add to further runs, per run and channel (N,), over the floor.
 
-    The law of the last of them is bent by a share `level` of its power.
+    The law of the last of them is bent by a share `level` of its power, with `bend`; default `bend_of(more)`.
     """
     out = [{c: np.zeros(len(y)) for c, y in seen.items()} for seen in more.target]
-    bends = {c: _bends(more, c, level) for c in terms[-1].channels} if level else {}
+    bend = bend or bend_of(more)
+    bends = {c: bend(c, level) for c in terms[-1].channels} if level else {}
     for i, term in enumerate(terms):
         for r, total in enumerate(out):
             for c in total:
@@ -42,20 +50,28 @@ def predicted(found: Fit, terms: Sequence[Term], more: Standardised, level: floa
     return out
 
 
-def _bends(more: Standardised, channel: Channel, level: float) -> dict[int, Array]:
-    """Return the factors on a law per run, (N,): one sine of the place's inputs in all runs for each component."""
-    inputs = [view.inputs(channel.actuator) for view in more.views]
-    together = np.concatenate(inputs)
-    middle, scale = together.mean(axis=0), np.maximum(together.std(axis=0), np.finfo(float).tiny)
-    seen = {r: found[channel] for r, found in enumerate(more.residuals) if channel in found}
-    width = next(iter(seen.values())).values.shape[1]
-    rng = np.random.default_rng(round(1.0 / level))
-    rates = rng.standard_normal((together.shape[1], width)) * math.pi / math.sqrt(together.shape[1])
-    phase = rng.uniform(0.0, 2.0 * math.pi, width)
-    return {
-        r: (1.0 + math.sqrt(2.0 * level) * np.sin((inputs[r] - middle)[x.ok] / scale @ rates + phase)).ravel()
-        for r, x in seen.items()
-    }
+def bend_of(more: Standardised) -> Bend:
+    """Return one sine of the place's inputs in all runs for each component, the same for whichever law it bends."""
+
+    @cache
+    def inputs_at(actuator: str) -> list[Array]:
+        inputs = [view.inputs(actuator) for view in more.views]
+        together = np.concatenate(inputs)
+        middle, scale = together.mean(axis=0), np.maximum(together.std(axis=0), np.finfo(float).tiny)
+        return [(x - middle) / scale for x in inputs]
+
+    @cache
+    def bend(channel: Channel, level: float) -> dict[int, Array]:
+        inputs = inputs_at(channel.actuator)
+        seen = {r: found[channel] for r, found in enumerate(more.residuals) if channel in found}
+        width = next(iter(seen.values())).values.shape[1]
+        rng = np.random.default_rng(round(1.0 / level))
+        rates = rng.standard_normal((inputs[0].shape[1], width)) * math.pi / math.sqrt(inputs[0].shape[1])
+        phase = rng.uniform(0.0, 2.0 * math.pi, width)
+        size = math.sqrt(2.0 * level)
+        return {r: (1.0 + size * np.sin(inputs[r][x.ok] @ rates + phase)).ravel() for r, x in seen.items()}
+
+    return bend
 
 
 def with_bend(j: Judged, before: Fit, after: Fit, data: Standardised, worth: float) -> float:

@@ -21,7 +21,7 @@ from sher3_diagnosis.fit.term import again
 from sher3_diagnosis.fit.tolerance import AsBuilt
 from sher3_diagnosis.judge.bets import LISTED, term_of
 from sher3_diagnosis.judge.calibration.calibration import in_force
-from sher3_diagnosis.judge.experiments.prediction import predicted, with_bend
+from sher3_diagnosis.judge.experiments.prediction import bend_of, predicted, with_bend
 from sher3_diagnosis.judge.probabilities import shares_of
 
 FORMS = 10
@@ -132,11 +132,11 @@ class Rivals:
         if built is not None:
             causes = [t for t in joined if not isinstance(t.effect, AsBuilt)]
             joined = [*_beside(built, [*causes, *(t for x in tried for t in x)]), *causes]
-        outcomes = []
+        outcomes, bend = [], bend_of(more)
         for i, (law, own) in enumerate(zip(self.laws, added, strict=True)):
             samples = sum(n for (_, c), n in more.samples.items() if c in own.channels)
             for level in levels:
-                both = self.data.with_runs(more, predicted(law.found, [*beside, own], more, level))
+                both = self.data.with_runs(more, predicted(law.found, [*beside, own], more, level, bend))
                 best = self._best([fit(both, [*joined, *t]) for t in tried])
                 after = best[law.effect]
                 worth = fit(both, joined).total - after.total
