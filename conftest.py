@@ -37,8 +37,21 @@ def pytest_runtest_logfinish() -> None:
         _size["bytes"] = _memory().rss
 
 
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Refuse a test in wall time whose file does not name its mark: `make test` looks for the word before it reads."""
+def pytest_configure(config: pytest.Config) -> None:
+    """Let the second of two workers read the files backwards: what one has compiled by then, the other need not."""
+    if os.environ.get("PYTEST_XDIST_WORKER") == "gw1" and config.args_source is config.ArgsSource.TESTPATHS:
+        config.args.reverse()
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Put the tests of all workers into one order, and refuse one in wall time whose file does not name its mark.
+
+    `make test` looks for that word before it reads.
+    """
+    if config.args_source is config.ArgsSource.TESTPATHS:
+        order = {config.rootpath / path: k for k, path in enumerate(config.getini("testpaths"))}
+        items.sort(key=lambda item: next(order[path] for path in item.path.parents if path in order))
     paths = {item.path for item in items if item.get_closest_marker("flaky")}
     hidden = sorted(str(path) for path in paths if "flaky" not in path.read_text())
     if hidden:

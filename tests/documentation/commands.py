@@ -52,6 +52,11 @@ class Command:
         return talks or "bench/" in self.line
 
     @property
+    def own_process(self) -> bool:
+        """Whether it loads the large libraries itself: a robot is many processes, and a bench measures its own."""
+        return self.bare.startswith(("sher3 up", "sher3 demo")) or "bench/" in self.line
+
+    @property
     def needs_robot(self) -> bool:
         """Whether a robot must be up."""
         return (

@@ -36,7 +36,7 @@ class Terminal:
         takes_domain: full names of the commands with an option `--domain`.
         limit: seconds that one command may take.
         empty: the folder has nothing but the environment, whose commands are found after its activation alone.
-        forked: what stands for `python` and `sher3` where a command is not one in wall time; None: nothing does.
+        forked: what stands for `python` and `sher3` where a command needs no process of its own.
     """
 
     def __init__(
@@ -45,8 +45,8 @@ class Terminal:
         domain: int,
         takes_domain: set[str],
         limit: float,
-        empty: bool = False,
-        forked: ForkedPython | None = None,
+        empty: bool,
+        forked: ForkedPython,
     ) -> None:
         self.folder, self.domain, self.takes_domain, self.limit = folder, domain, takes_domain, limit
         self.forked = forked
@@ -85,7 +85,7 @@ class Terminal:
         done = subprocess.run(
             self._words(command.line),
             cwd=self.folder,
-            env=self._environment(command.in_wall_time),
+            env=self._environment(command.own_process),
             stdin=subprocess.DEVNULL,
             capture_output=True,
             text=True,
@@ -150,10 +150,10 @@ class Terminal:
         asked = in_company(shortened(shown), self.domain, self.takes_domain)
         return ["bash", "-c", f"set -o pipefail; {self.activation}{line.replace(shown, asked)}"]
 
-    def _environment(self, in_wall_time: bool = True) -> dict[str, str]:
+    def _environment(self, own_process: bool = True) -> dict[str, str]:
         ours = str(Path(sys.executable).parent)
         paths = [path for path in os.environ["PATH"].split(":") if path != ours]
-        stand_ins = [] if in_wall_time or self.forked is None else [str(self.forked.folder)]
+        stand_ins = [] if own_process else [str(self.forked.folder)]
         return child_environment(
             PATH=":".join(paths if self.empty else [*stand_ins, ours, *paths]),
             # A page may write to the home folder; the compiled kernels stay where they are.
