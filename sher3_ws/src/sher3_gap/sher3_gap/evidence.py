@@ -13,7 +13,7 @@ from sher3_diagnosis.fit.standardised import Standardised
 from sher3_diagnosis.fit.tolerance import Tolerance, as_built, tolerance
 from sher3_effects import library
 
-from sher3_gap.nominal_replay import driven_as, followed
+from sher3_gap.nominal_replay import driven_as, first_alike, followed
 from sher3_gap.signals import RunSignals
 from sher3_gap.stages.exact.timing import Timing, demand_in_force, timing_of
 from sher3_gap.stages.floors import floors, with_load
@@ -64,9 +64,10 @@ def gather(runs: Sequence[RunSignals], robot: Robot) -> SherEvidence:
     timing = timing_of(runs, robot)
     demands = [demand_in_force(run, robot, timing) for run in runs]
     residuals = [all_residuals(run, robot, geometry, d) for run, d in zip(runs, demands, strict=True)]
-    twins = [twins_of(run, robot) for run in runs]
-    simulated = [[all_residuals(twin, robot, Geometry(robot)) for twin in own] for own in twins]
-    own = floors(runs, residuals, simulated, robot)
+    first = first_alike(runs)
+    made = {r: twins_of(runs[r], robot) for r in set(first)}
+    simulated = {r: [all_residuals(twin, robot, Geometry(robot)) for twin in own] for r, own in made.items()}
+    own = floors(runs, residuals, [simulated[r] for r in first], robot)
     own = [with_load(f, run, robot, geometry) for f, run in zip(own, runs, strict=True)]
     views = [SherView(run, robot, geometry) for run in runs]
     largest = largest_force(runs)
@@ -86,7 +87,7 @@ def gather(runs: Sequence[RunSignals], robot: Robot) -> SherEvidence:
         nuisance=as_built(data, tolerances),
         runs=list(runs),
         robot=robot,
-        twins=[unshifted for unshifted, *_ in twins],
+        twins=[made[r][0] for r in first],
         timing=timing,
         tolerances=tolerances,
     )

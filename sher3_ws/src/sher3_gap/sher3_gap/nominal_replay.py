@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -36,6 +37,15 @@ def driven_as(run: RunSignals, robot: Robot, seed: int = 0, shift: float = 0.0, 
         **plant,  # type: ignore[arg-type]
     )
     return signals_of(simulated, robot, run.name)
+
+
+def first_alike(runs: Sequence[RunSignals]) -> list[int]:
+    """Return for each run the number of the first that was driven alike: warmth moves no nominal plant."""
+    keys: list[object] = []
+    for r, run in enumerate(runs):
+        driven = (run.reference, run.reference_velocity, bridged(run))
+        keys.append(r if run.reference is None else tuple(x.tobytes() for x in driven if x is not None))
+    return [keys.index(key) for key in keys]
 
 
 def followed(run: RunSignals) -> RunSignals:

@@ -1,10 +1,12 @@
 """The nominal plant driven as a run was."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from recorded import ROBOT, run, stroke
 from sher3_gap.evidence import gather
-from sher3_gap.nominal_replay import bridged, driven_as, followed
+from sher3_gap.nominal_replay import bridged, driven_as, first_alike, followed
 from sher3_gap.simulate.tip import tip_error
 from simulated import runs_of, signals
 
@@ -35,3 +37,11 @@ def test_the_evidence_keeps_the_nominal_model_driven_as_each_run_was():
     runs = signals(runs_of(["steps"], repeats=2))
     for own, twin in zip(runs, gather(runs, ROBOT).twins, strict=True):
         assert np.array_equal(tip_error(own, twin), tip_error(own, driven_as(own, ROBOT)))
+
+
+def test_repeats_have_one_twin_whatever_their_warmth():
+    led = run(400, reference=stroke(), reference_velocity=np.zeros((400, 5)))
+    warm = replace(led, temperature=np.full(400, 30.0))
+    other, loaded = replace(led, reference=2.0 * led.reference), replace(led, contact=np.ones((400, 3)))
+    free = run(400, motor=stroke())
+    assert first_alike([led, other, warm, free, free, loaded]) == [0, 1, 0, 3, 4, 5]

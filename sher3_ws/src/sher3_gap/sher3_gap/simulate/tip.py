@@ -7,6 +7,7 @@ fit found it, with the coefficients of the other runs: it does not change how th
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cache
 
 import numpy as np
 from sher3_description import Robot
@@ -19,7 +20,7 @@ from sher3_diagnosis.verdict import Cause, Interval
 from sher3_effects import to_effects
 
 from sher3_gap.evidence import SherEvidence
-from sher3_gap.nominal_replay import driven_as
+from sher3_gap.nominal_replay import driven_as, first_alike
 from sher3_gap.signals import RunSignals
 from sher3_gap.simulate.spline import through
 from sher3_gap.stages.units import LOADED_TIP, TIP
@@ -33,7 +34,8 @@ def tip_closure(evidence: SherEvidence, causes: Sequence[Cause], fit: Fit) -> In
     at_tip = {t.key for t in fit.terms if TIP in t.channels or LOADED_TIP in t.channels}
     effects = to_effects([c for c in causes if (c.effect, c.actuator) not in at_tip], evidence.robot)
     quiet = without_tracker_noise(evidence.robot)
-    rows, own = [], []
+    rows, own, first = [], [], first_alike(evidence.runs)
+    twin_of = cache(lambda r: driven_as(evidence.runs[r], quiet))
     for r, run in enumerate(evidence.runs):
         if run.tracker_position is None or run.reference is None:
             continue
@@ -41,7 +43,7 @@ def tip_closure(evidence: SherEvidence, causes: Sequence[Cause], fit: Fit) -> In
         if floor is None:
             continue
         power = float(np.sum(floor[:3] ** 2))
-        twin = driven_as(run, quiet)
+        twin = twin_of(first[r])
         nominal = tip_error(run, twin)
         corrected = tip_error(run, driven_as(run, quiet, effects=effects)) if effects else nominal
         corrected = corrected - tip_shift(evidence, fit, r, shared_ticks(run, twin))
