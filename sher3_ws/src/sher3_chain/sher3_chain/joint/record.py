@@ -27,11 +27,9 @@ from sher3_machines.intake.mending.wraps import TURN, joined, wrapped_over
 from sher3_machines.intake.spelling import table_of
 from sher3_machines.intake.tables import Tables
 
-from sher3_chain.joint.counted import with_counted_clock
 from sher3_chain.joint.description import Axis, ChainDescription
-from sher3_chain.joint.fields import with_signs
+from sher3_chain.joint.logged import in_time, integrated, is_speed, with_counted_clock, with_signs
 from sher3_chain.joint.moments import JITTER, Stamped, timed
-from sher3_chain.joint.speed import in_time, integrated, is_speed
 from sher3_chain.joint.units import check_units
 
 MIN_SAMPLES = 20

@@ -30,19 +30,22 @@ def at_a_level(effort: Array) -> Mask:
         at = effort == level
         if level and at.mean() >= PINNED and longest_run(at) >= LONGEST and not at.all():
             out |= at
-    between = ~out & ~zero
-    repeats = np.diff(effort)[between[1:] & between[:-1]] == 0.0
-    stepped = longest_run(between) < LONGEST or float(np.mean(repeats)) > STEPS
-    return np.zeros_like(out) if stepped else out
+    return np.zeros_like(out) if _in_steps(effort, ~out & ~zero) else out
+
+
+def _in_steps(effort: Array, some: Mask) -> bool:
+    """Return whether some samples (n,) of an effort repeat the one before, as what a drive is told by a test does."""
+    repeats = np.diff(effort)[some[1:] & some[:-1]] == 0.0
+    return longest_run(some) < LONGEST or float(np.mean(repeats)) > STEPS
 
 
 def off(effort: Array) -> Mask:
     """Return (n,) True where a reading is exactly zero for a long stretch: the drive is off, and what it gives unknown.
 
-    A record without any other reading is no drive that is off for a while.
+    A record without any other reading is no drive that is off for a while; of one in steps zero is a step like others.
     """
     zero, out = effort == 0.0, np.zeros(len(effort), dtype=bool)
-    if zero.all():
+    if zero.all() or _in_steps(effort, ~zero):
         return out
     edges = np.flatnonzero(np.diff(np.concatenate([[0], zero.astype(int), [0]])))
     for first, last in zip(edges[::2], edges[1::2], strict=True):

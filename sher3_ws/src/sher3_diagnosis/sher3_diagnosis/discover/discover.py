@@ -13,7 +13,6 @@ from sher3_diagnosis.discover.ceiling import predicted
 from sher3_diagnosis.discover.columns import Columns, Recorded, columns
 from sher3_diagnosis.discover.dictionary import Group, dictionary
 from sher3_diagnosis.discover.feature import Feature, FormulaError
-from sher3_diagnosis.discover.folds import folds
 from sher3_diagnosis.discover.formula import Discovery, FoundTerm
 from sher3_diagnosis.discover.search import Search
 from sher3_diagnosis.discover.sentence import sentence
@@ -26,6 +25,8 @@ from sher3_diagnosis.quantify.jackknife import standard_error
 from sher3_diagnosis.thresholds import JACKKNIFE, LEAST_COMPONENT, MIN_RUNS, SMALL_REMAINDER
 from sher3_diagnosis.verdict import Interval, Parameter
 
+FOLDS = 3
+"""Folds: each holds repeats of what the others have too, and whatever was recorded once only in one of them."""
 Formula = list[tuple[int, Feature, float]]
 """Component, feature and coefficient of every term."""
 
@@ -229,3 +230,9 @@ def _terms(found: Columns, formula: Formula, again: Sequence[Formula]) -> list[F
 def alike(one: Feature, other: Feature) -> bool:
     """Return whether two features have the same laws of the same quantities."""
     return [(f.law, f.quantity) for f in one.factors] == [(f.law, f.quantity) for f in other.factors]
+
+
+def folds(excitations: Sequence[str]) -> list[list[int]]:
+    """Return the runs of every fold: repeats of one excitation are dealt to different folds."""
+    order = sorted(range(len(excitations)), key=lambda r: (excitations[r], r))
+    return [sorted(order[k::FOLDS]) for k in range(min(FOLDS, len(order)))]

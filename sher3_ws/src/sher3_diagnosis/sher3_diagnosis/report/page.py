@@ -3,23 +3,31 @@
 from __future__ import annotations
 
 from functools import cache
+from typing import NamedTuple
 
 import jinja2
 
+from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.discover.formula import Discovery
+from sher3_diagnosis.localise.regimes import regime_powers
 from sher3_diagnosis.machine import Diagnosis
 from sher3_diagnosis.report.causes import cause_cards
 from sher3_diagnosis.report.chain import chain
 from sher3_diagnosis.report.found import closures, found_rows
 from sher3_diagnosis.report.odds import answered, sizes
-from sher3_diagnosis.report.regimes import regimes
 from sher3_diagnosis.report.summary import command, five_lines, headline, noise_text
 from sher3_diagnosis.report.traces import traces
 from sher3_diagnosis.words import place, quantity, ratio_text, share, words
 
 TEMPLATE = "template.html"
-
-
+SHOWN = 4
+"""Channels shown, those with the largest gap."""
+ROWS = 10
+"""Regimes shown of a channel, those with the largest gap."""
+ABOVE_FLOOR = 1.16
+"""Rms over floor from which a regime is coloured as one with a gap: the power of a gap that is just significant."""
+SHORTEST = 1.5
+"""Rms over floor that a full bar stands for at least, so that regimes at the floor do not look large."""
 CORRECTED = 'v.corrected("fixed.xml")', "writes the model with the causes in it"
 """What goes on from an answer `v` in memory, and what it does."""
 
@@ -103,3 +111,23 @@ def _formula(found: Discovery | None) -> dict[str, object] | None:
     where = "" if not found.channels else f"{words(found.channel.stage)}, {place(found.channel.actuator)}"
     rows = found_rows(found) if found.claimed else []
     return {"where": where, "rows": rows, "closes": closures(found) if rows else "", "note": found.note}
+
+
+class Regimes(NamedTuple):
+    """Rms over floor of a channel by regime, largest first; what a full bar stands for, and where a gap begins."""
+
+    at: Channel
+    ratios: list[tuple[str, float]]
+    full: float
+    gap_from: float = ABOVE_FLOOR
+
+
+def regimes(diagnosis: Diagnosis) -> list[Regimes]:
+    """Return the regimes of the channels with a gap."""
+    gaps = [(g, f.evidence) for f in diagnosis.findings for g in f.gaps if g.significant]
+    out = []
+    for gap, evidence in sorted(gaps, key=lambda pair: -pair[0].power)[:SHOWN]:
+        powers = regime_powers(evidence, gap.channel)
+        ratios = sorted(((n, p**0.5) for n, p in powers.items()), key=lambda x: -x[1])[:ROWS]
+        out.append(Regimes(gap.channel, ratios, max((SHORTEST, *(r for _, r in ratios)))))
+    return out

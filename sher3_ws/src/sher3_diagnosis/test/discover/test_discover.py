@@ -4,9 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from sher3_diagnosis.discover.discover import discover, discover_at
+from sher3_diagnosis.discover.discover import discover, discover_at, folds
 from sher3_diagnosis.discover.feature import FormulaError, Quantity
-from sher3_diagnosis.discover.folds import folds
 from sher3_diagnosis.flow import diagnose
 from sher3_diagnosis.report.found import found_data, found_text
 from sher3_diagnosis.report.page import render

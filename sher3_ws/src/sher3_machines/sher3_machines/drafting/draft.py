@@ -21,10 +21,11 @@ from sher3_machines.drafting.guesses import (
     position_unit,
     reach,
     scatter,
+    swings_to_rest,
     time_unit,
     travel,
 )
-from sher3_machines.drafting.names import DRIVING, POSITION, named, words_of
+from sher3_machines.drafting.names import COUNTING, DRIVING, POSITION, named, words_of
 from sher3_machines.drafting.roles import DEMANDED, SIGNALS, Place, moves, once, paired, placed, together, values_of
 from sher3_machines.drafting.speeds import checked_by_speed
 from sher3_machines.errors import MachineError
@@ -43,7 +44,7 @@ ROTARY_UNITS = ("rad", "mrad", "deg", "arcmin", "arcsec", "rev", "count")
 ROTARY = (*ROTARY_UNITS, "rad/s", "deg/s", "rev/s", "rpm")
 NEWTONS = ("N", "kN", "mN", "gf", "kgf", "lbf", "N*m", "mN*m")
 """Units of forces and torques that add up."""
-CARTESIAN = {"x", "y", "z"}
+SLIDING_AXES = {"x", "y", "z", "cart", "carriage", "slide", "slider"}
 """Names of axes that slide."""
 GEARED = 1.5
 """Travel of one encoder over that of the other from which a gear is between them."""
@@ -118,8 +119,8 @@ def drafted(path: Path, tables: Tables, rate: float | None, guesses: list[str], 
         _axis(axis, signals, tables, period, reached[_spelt(signals["position"])], guesses)
         for axis, signals in groups.items()
     ]
-    if len(axes) == 1:
-        _let_go(axes[0], values_of(next(iter(groups.values()))["position"], tables), guesses)
+    for axis, signals in zip(axes, groups.values(), strict=True):
+        _let_go(axis, values_of(signals["position"], tables), guesses, alone=len(axes) == 1)
     checked_by_speed(time, axes, tables, None if clock is None else tables[clock], guesses)
     if not axes:
         raise MachineError(
@@ -138,9 +139,15 @@ def drafted(path: Path, tables: Tables, rate: float | None, guesses: list[str], 
 
 
 def _spelt(place: Place) -> object:
-    """Return the table of a column and the words of its name but those of its axis: one logger writes in one unit."""
+    """Return what places in one unit share: a table, the words of the name but the axis', and whether it slides."""
     name = place[0]
-    return table_of(name), frozenset(words_of(bare(name))) - set(named(name).axis.split("_"))
+    return table_of(name), frozenset(words_of(bare(name))) - set(named(name).axis.split("_")), _slides(place)
+
+
+def _slides(place: Place) -> bool:
+    """Return whether the name of a place says that its axis slides; `y` beside `u` is no direction."""
+    what = named(place[0])
+    return what.signal is not None and bool(set(what.axis.split("_")) & SLIDING_AXES)
 
 
 def _unit_of(place: Place, x: Array, reached: float) -> tuple[str, float, str]:
@@ -151,8 +158,8 @@ def _unit_of(place: Place, x: Array, reached: float) -> tuple[str, float, str]:
     what = named(place[0])
     if what.signal == "velocity":
         return (what.unit, 1.0, NAMED) if what.unit in VELOCITIES else ("rad/s", 1.0, "it is a velocity")
-    slides = what.signal is not None and bool(set(what.axis.split("_")) & CARTESIAN)  # `y` beside `u` is no direction
-    return position_unit(what.unit, x, slides, reached)
+    counted = what.unit is None and bool((x == np.round(x)).all()) and bool(set(words_of(bare(place[0]))) & COUNTING)
+    return position_unit("count" if counted else what.unit, x, _slides(place), reached)
 
 
 def by_motion(label: str, signals: Mapping[str, Place], tables: Tables, guesses: list[str]) -> Mapping[str, Place]:
@@ -231,9 +238,12 @@ def _axis(
     return {**out, **(_range(label, x * UNITS[own] * factor, str(out["motion"]), guesses) if named_so else {})}
 
 
-def _let_go(axis: dict[str, Any], x: Array, guesses: list[str]) -> None:
-    """Give a body of which only the place (n,) was recorded, and which comes to rest, a mass of one."""
-    if axis["command_law"]["kind"] == "none" and comes_to_rest(x):
+def _let_go(axis: dict[str, Any], x: Array, guesses: list[str], alone: bool) -> None:
+    """Give a body of which only the place (n,) was recorded, and which comes to rest, a mass of one.
+
+    Beside other axes it is one that swings to rest: what is moved point by point comes to rest as well.
+    """
+    if axis["command_law"]["kind"] == "none" and (comes_to_rest(x) if alone else swings_to_rest(x)):
         axis["mass"] = 1.0
         guesses.append(
             f"{axis['name']}: let go, because it comes to rest; its mass of 1 is a placeholder: forces are for each kg "

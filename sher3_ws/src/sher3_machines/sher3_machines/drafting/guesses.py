@@ -12,6 +12,7 @@ from sher3_machines.intake.fields import TIME_UNITS
 from sher3_machines.intake.spelling import bare
 from sher3_machines.intake.tables import Tables
 from sher3_machines.intake.units import UNITS
+from sher3_machines.thresholds import FURTHEST
 
 NAMED = "its name says so"
 """Why a place is in a unit that nobody had to guess."""
@@ -39,6 +40,10 @@ USUAL_RATES = (5.0, 20_000.0)
 """Rates, Hz, between which a clock is believed: of servo loops, and of slow loggers."""
 DYING = 0.5
 """Swing of the last third of a record over that of the first one below which its body comes to rest."""
+CROSSINGS = 3
+"""Times that a body which is let go goes through its place of rest at least: a cooling oven does not."""
+CLEAR = 0.2
+"""Share of the largest swing that counts as a side."""
 GROWING = 0.98
 """Share of the steps of a clock that do not run backwards: logs that were cut together have a few that do."""
 EVEN = 0.05
@@ -93,6 +98,13 @@ def comes_to_rest(x: Array) -> bool:
     """Return whether the last third of a record (n,) stays nearer to its end than the first third."""
     swing, third = np.abs(x - x[-1]), len(x) // 3
     return bool(swing[-third:].max() < DYING * swing[:third].max())
+
+
+def swings_to_rest(x: Array) -> bool:
+    """Return whether a column (n,) crosses its last value again and again, and less far at last."""
+    off = x - np.median(x[-len(x) // 10 :])
+    clear = np.sign(off[np.abs(off) > CLEAR * np.abs(off).max()])
+    return int(np.sum(np.diff(clear) != 0.0)) >= CROSSINGS and comes_to_rest(x)
 
 
 def grows(x: Array) -> bool:
@@ -157,10 +169,12 @@ def position_unit(unit: str | None, x: Array, slides: bool = False, reached: flo
     if unit is not None and unit in UNITS and unit not in ("count", "%", "1"):
         return unit, 1.0, NAMED
     largest = reach(x)
-    if unit == "count" or (bool((x == np.round(x)).all()) and largest > COARSE):
+    whole, beyond = bool((x == np.round(x)).all()), slides and largest > 1e3 * FURTHEST["linear"]
+    if unit == "count" or (whole and largest > COARSE) or beyond:
         bits = max(COARSEST_BITS, int(np.ceil(np.log2(max(float(np.ptp(x)), 2.0)))))
         factor = float(f"{2.0 * np.pi / 2**bits:.6g}")
-        return "count", factor, f"its values are whole; `factor` is a placeholder: 2^{bits} counts a turn"
+        why = "its values are whole" if whole or not beyond else f"values reach {largest:.4g}, beyond a room in mm"
+        return "count", factor, f"{why}; `factor` is a placeholder: 2^{bits} counts a turn"
     if slides:
         unit = "mm" if largest > WIDEST_ROOM else "m"
         return unit, 1.0, f"its axis is named as one that slides, and values reach {largest:.4g}"

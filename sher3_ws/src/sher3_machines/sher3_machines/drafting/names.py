@@ -25,6 +25,8 @@ POSITION = vocabulary(
     "displacement displ stroke gap hub verschiebung schrittzähler steps schritte thetam posición posicion posição "
     "posicao posizione ángulo angulo saída saida salida"
 )
+COUNTING = vocabulary("encoder enc")
+"""Words for a place that, where it is whole all along, is in counts."""
 VELOCITY = vocabulary(
     "velocity velocities vel speed qd dq omega qdot qvel gyro drehzahl geschwindigkeit rate dot thetadot xdot "
     "velocidad velocidade vitesse velocità"

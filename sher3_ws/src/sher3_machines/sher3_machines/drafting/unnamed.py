@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from sher3_diagnosis.channel import Array
 
-from sher3_machines.drafting.guesses import comes_to_rest, evenly, grows
+from sher3_machines.drafting.guesses import evenly, grows, swings_to_rest
 from sher3_machines.drafting.names import bare_and_unit
 from sher3_machines.errors import MachineError
 from sher3_machines.intake.mending.motion import AGREES, FOLLOWS, speed_of, speed_ratio
@@ -37,10 +37,8 @@ ROWS = 5000
 """Rows of a record that tell so, of a longer one every second or third row: each lateness takes a look at all."""
 AS_FAR = 1.25
 """Travel of one over that of the other from which a place is not told another one: a voltage, of a speed."""
-CROSSINGS = 3
-"""Times that a body which is let go goes through its place of rest at least: a cooling oven does not."""
-CLEAR = 0.2
-"""Share of the largest swing that counts as a side."""
+CIRCLE = 1e-2
+"""Share of the square of a radius by which a point on a circle leaves it: a joint that is turned before a tracker."""
 TINY = 1e-300
 
 Place = tuple[str, int | None]
@@ -98,7 +96,7 @@ def named_by_motion(tables: Tables, rate: float | None, guesses: list[str]) -> d
         why = "its speed" if found else "what it follows"
         guesses.append(f"{_said(x)} is a position, because {_said(other)} is {why}; nobody named them")
         named = {x: POSITION, other: role}
-    elif len(moving) == 1 and _swings_to_rest(*moving.values()):
+    elif len(moving) == 1 and swings_to_rest(*moving.values()):
         (x,) = moving
         guesses.append(f"{_said(x)} is a position, because it swings to rest and nothing else moves; nobody named it")
         named = {x: POSITION}
@@ -123,13 +121,6 @@ def _left(x: Array, y: Array) -> tuple[float, float]:
     x, y = x - x.mean(), y - y.mean()
     slope = float(x @ y) / max(float(y @ y), TINY)
     return float(np.sum((x - slope * y) ** 2)) / max(float(x @ x), TINY), slope
-
-
-def _swings_to_rest(x: Array) -> bool:
-    """Return whether a column (n,) crosses its last value again and again, and less far at last."""
-    off = x - np.median(x[-len(x) // 10 :])
-    clear = np.sign(off[np.abs(off) > CLEAR * np.abs(off).max()])
-    return int(np.sum(np.diff(clear) != 0.0)) >= CROSSINGS and comes_to_rest(x)
 
 
 def named_by_blocks(tables: Tables, rate: float | None, joints: int, guesses: list[str]) -> dict[Place, str]:
@@ -199,12 +190,20 @@ def _is_speed(t: Array, x: Array, v: Array) -> bool:
     What a motion drives, such as a pressure that a piston's speed lifts, follows its slope from another zero.
     """
     ratio = speed_ratio(t, x, v)
-    if ratio is None or ratio <= 0.0:
+    if ratio is None or ratio <= 0.0 or _on_a_circle(x, v):
         return False
     slope, sums = speed_of(t, x), np.concatenate([[0.0], np.cumsum(0.5 * (v[1:] + v[:-1]) * np.diff(t))])
     follows = float(np.corrcoef(slope, speed_of(t, sums))[0, 1]) > FOLLOWS
     strays = abs(x[-1] - x[0] - ratio * sums[-1]) / (t[-1] - t[0])
     return follows and bool(strays < AGREES * np.sqrt(np.mean(slope**2)))
+
+
+def _on_a_circle(x: Array, y: Array) -> bool:
+    """Return whether two columns (n,) are a point that runs on a circle: each follows the slope of the other."""
+    columns, squares = np.column_stack([x, y, np.ones_like(x)]), x**2 + y**2
+    a, b, c = np.linalg.lstsq(columns, squares, rcond=None)[0]
+    left = squares - columns @ np.array([a, b, c])
+    return bool(np.std(left) < CIRCLE * (c + 0.25 * (a**2 + b**2)))
 
 
 def values_at(place: Place, tables: Tables) -> Array:

@@ -24,9 +24,13 @@ NUMBERED = re.compile(rf"(?i:(?P<group>(?:[^/]+/)*?{WORD})/(?P<column>.+))")
 FILE = re.compile(r"(?P<group>[^/]+)/(?P<column>.+)")
 """A column of a file of a folder."""
 DIGITS = re.compile(r"[ _-]?\d+")
-LONGER = 1.1
-"""Duration of one file over that of another from which they are no channels of one log, which start and stop together.
-"""
+STOPPED_TOGETHER = 10.0
+"""Periods of the slowest file between whose ends those of the channels of one log lie, which stop together."""
+NUMBERING = {"index", "id", "number", *EPISODES.split("|")}
+"""Words of columns that number the runs, or what was done in them."""
+PARTS = "joint|axis|link|motor|drive|servo|wheel|leg|arm|finger|sensor|channel|ch|j|q|m"
+PART = re.compile(rf"(?i:.*(?<![a-z])({PARTS})[ _-]?\d+([ _-].*)?)")
+"""A file of a part of a machine: not each of them is a run."""
 
 
 def runs_of(data: Sequence[Path]) -> dict[str, Tables]:
@@ -46,7 +50,8 @@ def episodes_in(tables: Tables, named: re.Pattern[str] = NUMBERED) -> dict[str, 
     """Return the runs of a file or folder by name: groups numbered as runs are, or files, with the same columns.
 
     What stands beside them belongs to each of them. Empty where there are no two such groups. Files are runs where each
-    holds a whole machine and they differ in a number, or where they cover different stretches of time.
+    holds a whole machine and they differ in a number, or where they cover different stretches of time, or where
+    something was set for each; files of parts of a machine are none.
     """
     parts: dict[str, Tables] = defaultdict(dict)
     for name, x in tables.items():
@@ -54,7 +59,9 @@ def episodes_in(tables: Tables, named: re.Pattern[str] = NUMBERED) -> dict[str, 
             parts[match["group"]][match["column"]] = x
     kinds = {(DIGITS.sub("#", group), *sorted(part)) for group, part in parts.items()}
     runs = len(kinds) == 1 and (named is NUMBERED or all(map(_whole, parts.values())))
-    if len(parts) < 2 or not (runs or (named is FILE and _apart(list(parts.values())))):
+    files, alike = list(parts.values()), len({tuple(sorted(part)) for part in parts.values()}) == 1
+    by_file = named is FILE and alike and not all(map(PART.fullmatch, parts))
+    if len(parts) < 2 or not (runs or (by_file and (_apart(files) or _was_set(files)))):
         return {}
     beside = {name: x for name, x in tables.items() if not name.startswith(tuple(f"{group}/" for group in parts))}
     return {group.replace("/", "_"): {**beside, **part} for group, part in parts.items()}
@@ -82,20 +89,35 @@ def _apart(files: Sequence[Tables]) -> bool:
 
     Channels and joints of one machine are logged over one stretch of time, whatever their rates.
     """
-    starts, ends = np.array([_stretch(tables) for tables in files]).T
-    spans = ends - starts
-    alike = len({tuple(sorted(tables)) for tables in files}) == 1
-    return alike and bool(spans.max() > LONGER * spans.min() or starts.max() >= ends.min())
+    starts, ends, rows = np.array([_stretch(tables) for tables in files]).T
+    slowest = float(np.max((ends - starts) / rows))
+    return bool(np.ptp(ends) > STOPPED_TOGETHER * slowest or starts.max() >= ends.min())
 
 
-def _stretch(tables: Tables) -> tuple[float, float]:
-    """Return the first and last number of the first column that grows all along, else the numbers of the rows."""
+def _stretch(tables: Tables) -> tuple[float, float, int]:
+    """Return the first and last number of the first column that grows all along, or the rows' own, and their count."""
     for x in tables.values():
         if x.ndim == 1 and len(x) > 1 and (np.diff(x) >= 0.0).all() and x[-1] > x[0]:
-            return float(x[0]), float(x[-1])
-    return 0.0, float(max(map(len, tables.values()), default=0))
+            return float(x[0]), float(x[-1]), len(x)
+    rows = max(1, *map(len, tables.values()))
+    return 0.0, float(rows), rows
 
 
 def longest(path: Path) -> Tables:
-    """Return the run of a path with most samples, which a draft is made of; raises MachineError."""
-    return max(_runs(path).values(), key=lambda tables: max(map(len, tables.values()), default=0))
+    """Return the run of a path with most samples, which a draft is made of; raises MachineError.
+
+    Where something was set for each run and stays in it, the runs stand one below the other, so that it is seen.
+    """
+    runs = list(_runs(path).values())
+    most = max(runs, key=lambda tables: max(map(len, tables.values()), default=0))
+    if not _was_set(runs):
+        return most
+    return {name: np.concatenate([run[name] for run in runs]) for name in most if all(name in run for run in runs)}
+
+
+def _was_set(runs: Sequence[Tables]) -> bool:
+    """Return whether a column that numbers nothing stays in every run, and not at the same number in all of them."""
+    named = [name for name in runs[0] if not NUMBERING & set(re.split(r"[\W_]+", name.lower()))]
+    columns = [[run[name] for run in runs] for name in named if all(name in run for run in runs)]
+    stay = (c for c in columns if all(x.ndim == 1 and len(x) and not np.ptp(x) for x in c))
+    return any(len({float(x[0]) for x in c}) > 1 for c in stay)

@@ -336,3 +336,19 @@ def test_a_servo_on_a_bus_keeps_its_signs_in_a_bit_of_their_own(tmp_path):
     (tmp_path / "a.yaml").write_text(found.text, encoding="utf-8")
     notes = import_case([tmp_path / "a.csv"], tmp_path / "a.yaml", tmp_path / "case")
     assert any("1025 for -1" in note for note in notes) and any("32769 for -1" in note for note in notes)
+
+
+def test_whole_numbers_of_an_encoder_are_counts_however_few(tmp_path):
+    t = np.arange(400) / 100.0
+    found = written(tmp_path, "t,encoder_1_pos,effort", t, np.round(120.0 * np.sin(t)), np.cos(t))
+    assert parse_yaml(found.text)["axes"][0]["signals"]["position"]["unit"] == "count"
+
+
+def test_a_pendulum_on_a_cart_has_a_unit_of_its_own_and_is_let_go(tmp_path):
+    """The cart is held, and reads a number of some kilometres."""
+    t = np.arange(3000) / 100.0
+    swing, held = np.exp(-0.1 * t) * np.cos(4.7 * t), 55439.45 + 0.06 * np.random.default_rng(1).integers(0, 2, len(t))
+    found = parse_yaml(written(tmp_path, "t,PendPos,CartPos", t, swing, held).text)
+    pend, cart = (next(axis for axis in found["axes"] if axis["name"] == name) for name in ("pend", "cart"))
+    assert pend["signals"]["position"]["unit"] == "rad" and pend["mass"] == 1.0
+    assert cart["signals"]["position"]["unit"] == "count" and "mass" not in cart

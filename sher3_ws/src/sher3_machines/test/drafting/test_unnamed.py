@@ -116,3 +116,14 @@ def test_a_short_table_of_readings_can_be_named(tmp_path):
     described = parse_yaml(draft_of(tmp_path / "a.csv", names=("weight_kg", "reading", "")).text)
     assert described["kind"] == "load_cell"
     assert (described["applied"]["column"], described["reading"]["column"]) == ("M", "d")
+
+
+@pytest.mark.parametrize("centre", [(0.0, 0.0), (0.3, -0.2)])
+def test_a_point_on_a_circle_is_no_place_and_its_speed(tmp_path, centre):
+    """A joint that is turned before a tracker: each coordinate follows the slope of the other one."""
+    t = np.arange(400) * 0.05
+    turn = np.pi * (1.0 - np.cos(np.pi * t / t[-1])) / 2.0
+    rows = np.column_stack([t, 0.5 * np.sin(turn) + centre[0], -0.5 * np.cos(turn) + centre[1], np.full_like(t, 0.8)])
+    np.savetxt(tmp_path / "a.csv", rows, delimiter=",")
+    with pytest.raises(MachineError, match="looks like a position"):
+        draft_of(tmp_path / "a.csv")

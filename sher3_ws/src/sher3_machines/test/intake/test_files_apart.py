@@ -2,6 +2,8 @@
 
 import numpy as np
 import pytest
+from sher3_common import parse_yaml
+from sher3_machines.drafting.drafts import draft_of
 from sher3_machines.intake.runs import runs_of
 
 WORDS = ("slow", "fast", "loaded")
@@ -37,3 +39,26 @@ def test_joints_that_one_log_covers_are_no_runs(tmp_path, seed):
     write(tmp_path, {j: s + np.arange(0.0, 10.0, 1.0 / r) for j, s, r in zip(joints, start, rates, strict=True)})
     (run,) = runs_of([tmp_path]).values()
     assert {name.split("/")[0] for name in run} == set(joints)
+
+
+@pytest.mark.parametrize("name", ["motor_data_{}_volts", "{}kg", "sweep-{}.5Hz-up"])
+def test_files_that_are_named_by_what_was_set_are_runs_and_what_was_set_drives(tmp_path, name):
+    """Each run has one voltage, so that none of them shows that it changes."""
+    t = np.arange(300) * 0.01
+    for level in (3, 6, 12):
+        rows = np.column_stack([t, np.full_like(t, level), 50.0 * level * (1.0 - np.exp(-t / 0.1))])
+        path = tmp_path / f"{name.format(level)}.csv"
+        np.savetxt(path, rows, delimiter=",", header="Time (s),Voltage (V),Speed (rad/s)", comments="")
+    assert len(runs_of([tmp_path])) == 3
+    (axis,) = parse_yaml(draft_of(tmp_path).text)["axes"]
+    assert axis["signals"]["command"]["column"] == "Voltage (V)" and axis["command_law"]["kind"] == "force"
+
+
+def test_runs_may_end_a_few_hundredths_apart_and_joints_too(tmp_path):
+    stretches = {f"step_duty_0.{n}": np.arange(900 + 20 * n) * 0.006 for n in (5, 6, 8)}
+    write(tmp_path, stretches)
+    assert set(runs_of([tmp_path])) == set(stretches)
+    joints = tmp_path / "joints"
+    joints.mkdir()
+    write(joints, {f"joint_{n}_rad": np.arange(900 + 20 * n) * 0.006 for n in (5, 6, 8)})
+    assert len(runs_of([joints])) == 1

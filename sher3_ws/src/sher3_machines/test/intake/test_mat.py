@@ -111,3 +111,12 @@ def test_signals_in_structs_go_by_the_names_that_stand_in_them(tmp_path, title, 
     found = read_tables(path)
     assert set(found) == {"run/X/Data", "run/Y/Model Root/position", "run/Y/duty"}
     assert found["run/Y/Model Root/position"] == pytest.approx(np.sin(t))
+
+
+def test_signals_of_a_structure_with_time_stand_beside_their_stamps(tmp_path):
+    """One of them need not be named: it has its number."""
+    t = np.arange(50) / 100.0
+    rows = np.zeros(2, dtype=[("values", object), ("label", object)])
+    rows[0], rows[1] = (np.cos(t), ""), (np.sin(t), "PendPos")
+    scipy.io.savemat(tmp_path / "run.mat", {"swing": {"time": t, "signals": rows, "blockName": "rig/Scope"}})
+    assert set(read_tables(tmp_path / "run.mat")) == {"swing/time", "swing/1", "swing/PendPos"}

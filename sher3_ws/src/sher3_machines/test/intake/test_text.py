@@ -136,3 +136,14 @@ def test_words_beside_the_numbers_of_the_first_row_make_no_header(tmp_path, word
     (tmp_path / "a.csv").write_text("\n".join(",".join([*r[:place], word, *r[place:]]) for r in rows))
     found = read_tables(tmp_path / "a.csv")
     assert len(found) == 2 and all(len(x) == 40 for x in found.values())
+
+
+@pytest.mark.parametrize("sign", [";", ""])
+def test_a_matrix_as_matlab_writes_it_is_a_table(tmp_path, sign):
+    """Titles of several words stand over columns that blanks part, as the controllers of teaching rigs export them."""
+    rows = [f"{i}  {0.009 * i:.3f}  {-i}  0.50" for i in range(6)]
+    text = "Sample  Time   Encoder 1 Pos   Control Effort\n\n[" + f"{sign}\n".join(rows) + "]\n"
+    found = tables(tmp_path, text)
+    assert list(found) == ["Sample", "Time", "Encoder 1 Pos", "Control Effort"]
+    assert found["Encoder 1 Pos"].tolist() == [0.0, -1.0, -2.0, -3.0, -4.0, -5.0]
+    assert tables(tmp_path, "a = [0 1.5; 1 2.5; 2 3.5];")["c1"].tolist() == [1.5, 2.5, 3.5]

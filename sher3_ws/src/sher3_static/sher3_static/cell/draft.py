@@ -36,7 +36,9 @@ def loads_of(tables: Tables) -> tuple[str, str] | None:
     flat = {n: x for n, x in tables.items() if x.ndim == 1 and np.isfinite(x).mean() >= 1.0 - LACKING}
     if any(tells_time(n) for n in tables) or {"force", "torque"} <= wrench_of(tables).keys():
         return None
-    names = [n for words in (STATED, FORCE) for n in flat if words & set(words_of(bare_and_unit(bare(n))[0]))]
+    displaced = any(named(n).signal == "position" and np.ptp(x) > 0.0 for n, x in flat.items())
+    known = (STATED,) if displaced else (STATED, FORCE)  # a force beside travel is what a spring gave
+    names = [n for words in known for n in flat if words & set(words_of(bare_and_unit(bare(n))[0]))]
     for load in dict.fromkeys(names):
         x = flat[load]
         for other, y in flat.items():

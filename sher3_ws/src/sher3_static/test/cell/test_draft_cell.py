@@ -99,3 +99,15 @@ def test_a_spring_a_record_in_time_and_what_does_not_follow_are_no_cell(tmp_path
         assert "load_cell" not in drafted(tmp_path, header, *columns).text
     except MachineError as error:
         assert "looks like a" in str(error)
+
+
+def test_a_force_that_a_spring_gave_over_its_travel_is_no_known_load(tmp_path):
+    """What a sensor read beside it follows it exactly, and was computed from it."""
+    travel = 20.0 - 20.0 * np.cos(np.linspace(0.0, 6.0, 60))
+    force = -0.3 * np.tanh(travel / 20.0)
+    table = np.column_stack([travel, force, 0.03 * force])
+    np.savetxt(
+        tmp_path / "a.csv", table, delimiter=",", header="Servo Displacement (deg),Force (N),Tz (Nm)", comments=""
+    )
+    with pytest.raises(MachineError, match="force over speed or travel"):
+        draft_of(tmp_path / "a.csv")

@@ -30,6 +30,9 @@ CLASS = "_Class"
 """Field of what the reader makes of a class object."""
 NAMES, NUMBERS = ("name", "label"), ("data", "values")
 """Fields of a struct that holds a signal under its name: captures of dSPACE, structures with time of Simulink."""
+SIGNALS = "signals"
+WITH_TIME = {"time", SIGNALS}
+"""Fields of a structure with time of Simulink: its signals go beside their stamps."""
 HDF5 = b"MATLAB 7.3"
 """How files of version 7.3 begin."""
 
@@ -74,8 +77,9 @@ def flatten(name: str, value: Any, depth: int = 0) -> dict[str, Array]:
         return {}
     if x.dtype.names:
         if titled := _titled(x):
-            return {f"{name}/{title}": array for title, array in titled.items()}
-        parts = [{n: flatten(n, row[n], depth + 1) for n in x.dtype.names} for row in x.ravel()]
+            return {f"{name}/{title}" if name else title: array for title, array in titled.items()}
+        beside = {SIGNALS: ""} if set(x.dtype.names) >= WITH_TIME else {}
+        parts = [{n: flatten(beside.get(n, n), row[n], depth + 1) for n in x.dtype.names} for row in x.ravel()]
         merged: dict[str, list[Array]] = {}
         for part in parts:
             for found in part.values():
@@ -99,13 +103,14 @@ def _cells(name: str, x: Any, depth: int) -> dict[str, Array]:
 
 
 def _titled(x: Any) -> dict[str, Array]:
-    """Return the signals of an array of structs by the names that stand in them; empty where one has none."""
+    """Return the signals of an array of structs by the names that stand in them, or by their number; empty without."""
     fields = {n.lower(): n for n in x.dtype.names}
     title, numbers = (next((fields[n] for n in known if n in fields), None) for known in (NAMES, NUMBERS))
     if title is None or numbers is None:
         return {}
     said = ["".join(map(str, np.ravel(row[title]))).replace('"', "").strip("/ ") for row in x.ravel()]
     arrays = [np.asarray(row[numbers]) for row in x.ravel()]
+    said = [name or str(i + 1) for i, name in enumerate(said)] if any(said) else said
     if not all(said) or len(set(said)) < len(said) or any(a.dtype.kind not in "fiub" or not a.size for a in arrays):
         return {}
     return {title: plain(array) for title, array in zip(said, arrays, strict=True)}

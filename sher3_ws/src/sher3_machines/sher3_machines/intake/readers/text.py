@@ -30,6 +30,8 @@ LISTED = re.compile(r"(?:^|(?<=[,;\t]))\s*\[[^\[\]]*\]")
 """A list in a cell without quotes, whose commas part no cells."""
 BLANKS = re.compile(r"\[[^\[\]]*\]|\S+")
 """Cells that blanks part; a list is one cell."""
+WIDE_BLANKS = re.compile(r"\s{2,}")
+"""What parts titles of several words, `Encoder 1 Pos`, over columns that blanks part."""
 
 
 def read_table(path: Path) -> dict[str, Array]:
@@ -42,7 +44,7 @@ def read_table(path: Path) -> dict[str, Array]:
         FileError: the file cannot be read, or is no text.
         ValueError: it has no rows.
     """
-    lines = [line for line in decoded(path).splitlines() if line.strip()]
+    lines = _unbracketed([line for line in decoded(path).splitlines() if line.strip()])
     preamble = 0
     while preamble < len(lines) and lines[preamble].lstrip().startswith(COMMENTS):
         preamble += 1
@@ -51,7 +53,7 @@ def read_table(path: Path) -> dict[str, Array]:
         raise ValueError("no rows")
     mark = separator(body[usual_row(len(body))])
     body = _ended(_without_remarks(body, mark), mark)
-    rows = list(csv.reader(map(_quoted, body), delimiter=mark)) if mark else [BLANKS.findall(line) for line in body]
+    rows = list(csv.reader(map(_quoted, body), delimiter=mark)) if mark else _parted_by_blanks(body)
     comma = mark in (";", "\t", None) and any(DECIMAL_COMMA.fullmatch(c.strip()) for r in rows[:FIRST] for c in r)
     if is_long(rows):
         return tables_of_readings(rows)
@@ -79,6 +81,24 @@ def separator(line: str) -> str | None:
     """Return what parts the cells of a line; None: blanks."""
     outside = LISTED.sub("", QUOTED.sub("", line))
     return next((m for text in (outside.strip(SEPARATORS), outside) for m in SEPARATORS if m in text), None)
+
+
+def _unbracketed(lines: list[str]) -> list[str]:
+    """Return the lines of a matrix as MATLAB writes it, `[1 2; 3 4]`, a row a line and without its signs."""
+    opened = next((i for i, line in enumerate(lines) if "[" in line), None)
+    if opened is None or "]" in "".join(lines[opened:-1]) or not lines[-1].rstrip("; ").endswith("]"):
+        return lines
+    inside = [lines[opened].partition("[")[2], *lines[opened + 1 :]]
+    rows = [row.strip("] \t") for line in inside for row in line.split(";")]
+    return [*lines[:opened], *(row for row in rows if row)]
+
+
+def _parted_by_blanks(lines: list[str]) -> list[list[str]]:
+    """Return the cells of lines that blanks part; wide blanks, where titles of several words stand above columns."""
+    rows = [BLANKS.findall(line) for line in lines]
+    width = len(rows[usual_row(len(rows))])
+    wide = WIDE_BLANKS.split(lines[0].strip())
+    return [wide, *rows[1:]] if len(rows[0]) > width == len(wide) else rows
 
 
 def _ended(lines: list[str], mark: str | None) -> list[str]:
