@@ -19,7 +19,6 @@ from sher3_static.arm.description import Joint
 from sher3_static.arm.kind import KIND, KnownArm
 from sher3_static.arm.kinematics import Arm, arm_from_table, postures
 from sher3_static.arm.sight import PoseSight
-from sher3_static.kind import StaticTest
 from sher3_static.readings import Readings
 
 TARGET = 20.0
@@ -54,7 +53,7 @@ def main() -> None:
     parser.add_argument("--json", action="store_true")
     options = parser.parse_args()
     arm, data = calibration(options.poses)
-    machine = StaticTest(KIND, KnownArm(arm, PoseSight(), NOISE, NOISE_ROTATION))
+    machine = KIND.knowing(KnownArm(arm, PoseSight(), NOISE, NOISE_ROTATION))
     clock, processor = time.perf_counter(), time.process_time()
     verdict = diagnose(machine, [data]).verdict
     row = {

@@ -3,9 +3,8 @@
 import numpy as np
 from scipy.spatial.transform import Rotation
 from sher3_static.arm.description import ArmDescription
-from sher3_static.arm.kind import KIND
+from sher3_static.arm.kind import KIND, ArmKind
 from sher3_static.arm.kinematics import postures, transform
-from sher3_static.kind import StaticTest
 from sher3_static.readings import Readings
 
 HALF = np.pi / 2
@@ -23,7 +22,7 @@ def described(rows=ROWS, **more) -> ArmDescription:
     return ArmDescription.model_validate({**base, "noise": 2e-4, "joints": joints, **more})
 
 
-def machine(rows=ROWS, **more) -> StaticTest:
+def machine(rows=ROWS, **more) -> ArmKind:
     return KIND.machine(described(rows, **more))
 
 

@@ -13,7 +13,7 @@ from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.finding import Finding
 from sher3_diagnosis.machine import Policy
 from sher3_diagnosis.quantify.closure import closure
-from sher3_diagnosis.verdict import Interval
+from sher3_diagnosis.verdict import Cause, Interval
 from sher3_machines.errors import MachineError
 from sher3_machines.intake.kind import Draft
 from sher3_machines.intake.tables import Tables
@@ -66,7 +66,7 @@ class ArmKind(TableKind[ArmDescription]):
     stored = ("joints",)
     written_for = ("arm",)
     policy = Policy(swept=True, carried=True, own_level=True, absences=True)
-    plan = SearchPlan(layers=True)
+    search = SearchPlan(layers=True)
     words = Words(
         rows="{n} postures, measured from outside",
         whole="All postures",
@@ -77,7 +77,7 @@ class ArmKind(TableKind[ArmDescription]):
         residual={"mechanism": "measured − nominal pose"},
     )
 
-    def known(self, description: ArmDescription) -> KnownArm:
+    def known_by(self, description: ArmDescription) -> KnownArm:
         """Return the arm; raises MachineError for a URDF that cannot be read or has no such chain."""
         arm = (
             arm_from_table(description.joints, description.tip)
@@ -124,7 +124,7 @@ class ArmKind(TableKind[ArmDescription]):
         )
         return [table]
 
-    def remarks(self, finding: Finding[TableEvidence]) -> list[str]:
+    def said(self, finding: Finding[TableEvidence]) -> list[str]:
         """Say how far held-out postures are off, layer by layer, and where what is left lies."""
         evidence, steps = finding.evidence, finding.attribution.steps
         folds = f"{evidence.table.view.rows} postures, one in {FOLDS} held out in turn"
@@ -140,7 +140,7 @@ class ArmKind(TableKind[ArmDescription]):
             notes.append(f"fitted and not named, since their size may be zero: {', '.join(small)}")
         return notes + ([worst_postures(evidence, found.fit)] if finding.left else [])
 
-    def end_to_end(self, findings: Sequence[Finding[TableEvidence]]) -> Interval | None:
+    def end_to_end(self, findings: Sequence[Finding[TableEvidence]], causes: Sequence[Cause]) -> Interval | None:
         """Return the closure of the measured pose, which is the end of the chain."""
         evidence = findings[0].evidence
         return closure(evidence, TIP, evidence.null(), findings[0].attribution.fit)

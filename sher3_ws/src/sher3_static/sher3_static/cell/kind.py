@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from pathlib import Path
 
 import numpy as np
 from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.finding import Finding
 from sher3_diagnosis.words import lower
 from sher3_effects.table_view import CellView
-from sher3_machines.intake.kind import Draft
-from sher3_machines.intake.tables import Tables
 from sher3_machines.thresholds import BLOCKS
 
 from sher3_static.cell.description import CellDescription
@@ -33,6 +30,7 @@ class CellKind(TableKind[CellDescription]):
 
     name, description = "load_cell", CellDescription
     reader = staticmethod(read_cell)
+    drafter = staticmethod(draft_cell)
     stored = ("applied", "reading", "temperature")
     written_for = ("cell",)
     words = Words(
@@ -44,10 +42,6 @@ class CellKind(TableKind[CellDescription]):
         flows={"sensing": "force → reading"},
         residual={"sensing": "reading − force"},
     )
-
-    def draft(self, path: Path, tables: Tables, rate: float | None, model: Path | None) -> Draft | None:
-        """Draft a table of known loads and readings; None where the file is none."""
-        return draft_cell(path, tables) if rate is None and model is None else None
 
     def tables(self, known: CellDescription, runs: Sequence[Readings]) -> Sequence[Table]:
         """Return all readings as one table; every eighth is held out in turn."""
@@ -73,7 +67,7 @@ class CellKind(TableKind[CellDescription]):
         )
         return [table]
 
-    def remarks(self, finding: Finding[TableEvidence]) -> list[str]:
+    def said(self, finding: Finding[TableEvidence]) -> list[str]:
         """Return what data sheets of cells state: errors in shares of the largest force."""
         table = finding.evidence.table
         whole = float(np.abs(table.view.applied).max())  # type: ignore[attr-defined]

@@ -3,11 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from pathlib import Path
 
 from sher3_diagnosis.finding import Finding
-from sher3_machines.intake.kind import Draft
-from sher3_machines.intake.tables import Tables
 
 from sher3_static.kind import TableKind
 from sher3_static.positioning.axis import axis_table
@@ -26,6 +23,7 @@ class PositioningKind(TableKind[PositioningDescription]):
 
     name, description = "positioning", PositioningDescription
     reader = staticmethod(read_tests)
+    drafter = staticmethod(draft_test)
     written_for = ("table", "circle")
     words = Words(
         rows="{name}: {n} rows",
@@ -37,17 +35,13 @@ class PositioningKind(TableKind[PositioningDescription]):
         residual={"transmission": "reading − target", "mechanism": "radius − nominal"},
     )
 
-    def draft(self, path: Path, tables: Tables, rate: float | None, model: Path | None) -> Draft | None:
-        """Draft a test of a table without a clock that has targets and readings; None without them."""
-        return draft_test(path, tables) if rate is None and model is None else None
-
     def tables(self, known: PositioningDescription, runs: Sequence[Readings]) -> Sequence[Table]:
         """Return every test as a table; raises MachineError where nothing tells what repeats."""
         axes = [axis_table(test, [within(run, f"axes/{test.name}/") for run in runs]) for test in known.axes]
         circles = [circle_table(test, [within(run, f"planes/{test.name}/") for run in runs]) for test in known.planes]
         return [*axes, *circles]
 
-    def remarks(self, finding: Finding[TableEvidence]) -> list[str]:
+    def said(self, finding: Finding[TableEvidence]) -> list[str]:
         """Return the contribution ranking."""
         return ranking(finding.evidence.table, finding.attribution)
 

@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from pathlib import Path
 
 import numpy as np
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.finding import Finding
 from sher3_effects import pages
-from sher3_machines.intake.kind import Draft
-from sher3_machines.intake.tables import Tables
 from sher3_machines.thresholds import BLOCKS
 
 from sher3_static.kind import TableKind
@@ -33,6 +30,7 @@ class SensorKind(TableKind[SensorDescription]):
 
     name, description = "force_sensor", SensorDescription
     reader = staticmethod(read_sensor)
+    drafter = staticmethod(draft_sensor)
     stored = ("wrench", "temperature")
     written_for = ("sensor",)
     words = Words(
@@ -44,10 +42,6 @@ class SensorKind(TableKind[SensorDescription]):
         flows={"sensing": "load → reading"},
         residual={"sensing": "reading − nominal"},
     )
-
-    def draft(self, path: Path, tables: Tables, rate: float | None, model: Path | None) -> Draft | None:
-        """Draft a sensor of a table of wrenches and orientations."""
-        return draft_sensor(path, tables)
 
     def tables(self, known: SensorDescription, runs: Sequence[Readings]) -> Sequence[Table]:
         """Return all readings as one table; every eighth is held out in turn."""
@@ -72,7 +66,7 @@ class SensorKind(TableKind[SensorDescription]):
         )
         return [table]
 
-    def remarks(self, finding: Finding[TableEvidence]) -> list[str]:
+    def said(self, finding: Finding[TableEvidence]) -> list[str]:
         """Say what is known of the load, and in which frame the readings are where this is not the stated frame."""
         view = finding.evidence.table.view
         assert isinstance(view, SensorView)

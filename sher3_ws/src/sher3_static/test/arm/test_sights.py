@@ -24,7 +24,7 @@ def seen(sight, offsets, zero=0.0, n=150, seed=0):
     """Columns of a record of the arm whose joints read `offsets` too much."""
     rng = np.random.default_rng(seed)
     q = rng.uniform(-1.2, 1.2, (n, len(ROWS)))
-    flange = postures(KIND.known(arm(sight)).arm, q - offsets).tip @ X
+    flange = postures(KIND.known_by(arm(sight)).arm, q - offsets).tip @ X
     measured = (Z @ flange)[:, :3, 3]
     if sight == "lengths":
         measured = np.linalg.norm(flange[:, :3, 3] - ANCHOR, axis=1)
