@@ -2,26 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import TypeVar
 
+import numpy as np
 from sher3_common.progress import Say
 from sher3_diagnosis.attribute.candidates import Candidates
 from sher3_diagnosis.attribute.rivals import Attribution
 from sher3_diagnosis.attribute.search import Left
+from sher3_diagnosis.channel import Array
 from sher3_diagnosis.fit.fitting import Fit
 from sher3_diagnosis.judge.left_over import down_to_floor
+from sher3_diagnosis.localise.readings import noise_in
 from sher3_diagnosis.machine import Machine
 from sher3_diagnosis.verdict import Noise
+from sher3_machines.drafting.guesses import count_of
 from sher3_machines.intake.notes import merged
 
 from sher3_chain.chain.evidence import ChainEvidence
 from sher3_chain.joint.conditions import Condition, conditions_of, confounded_conditions, reference_runs
-from sher3_chain.joint.description import ChainDescription
-from sher3_chain.joint.record import AxesRun
-from sher3_chain.readings.noise import noise_of_joint
+from sher3_chain.joint.description import Axis, ChainDescription
+from sher3_chain.joint.record import READINGS, AxesRun
 from sher3_chain.readings.wrong import wrong_readings
 from sher3_chain.search.changes import contrasted, of_runs
 
@@ -92,3 +95,24 @@ class Chain(Machine[AxesRun, E]):
     def repeated(self, runs: Sequence[AxesRun]) -> bool:
         """Return whether the runs are repeats of one motion."""
         return self.described.repeats and len(runs) > 1
+
+
+def noise_of_joint(joint: Axis, records: Sequence[Mapping[str, Array]]) -> list[Noise]:
+    """Return the noise of every reading of a joint that changes.
+
+    A place that is the sum of a speed, or an effort that follows from a law, is no reading.
+
+    Args:
+        joint: as described.
+        records: signal -> readings (n,), of each record.
+    """
+    gain, force = joint.effort_as_read
+    out = []
+    for reading in READINGS:
+        scale, unit = (gain, force) if reading == "effort" else (1.0, joint.unit_of_position)
+        read = getattr(joint.signals, reading) is not None and not (reading == "position" and joint.summed)
+        moving = [scale * found[reading] for found in records if reading in found and np.ptp(found[reading]) > 0.0]
+        if read and moving:
+            steps = [step for x in moving if (step := count_of(x)) is not None]
+            out.append(noise_in(joint.name, reading, unit, moving, max(steps, default=0.0)))
+    return out
