@@ -27,10 +27,13 @@ METHOD = re.compile(r'integrator="(\w+)"')
 """Where a drawn model says how it is integrated."""
 
 
-def answers(seed: int) -> tuple[str, dict[str, gap.Answer]]:
-    """Return the integrator of a healthy arm, and record -> answer: servos at even seeds, motors at odd ones."""
+def answers(seed: int, steps: int) -> tuple[str, dict[str, gap.Answer]]:
+    """Return the integrator of a healthy arm, and record -> answer: servos at even seeds, motors at odd ones.
+
+    A row of the log is so many steps of the model, in which controls hold.
+    """
     xml = drawn_xml(np.random.default_rng(seed), servo=seed % 2 == 0)
-    log, model = logged(xml, seed), mujoco.MjModel.from_xml_string(xml)
+    log, model = logged(xml, seed, steps), mujoco.MjModel.from_xml_string(xml)
     force = log.actuator_force * model.actuator_gear[:, 0]
     table, own = {"time": log.time, "qpos": log.qpos}, {"actuator_force": log.actuator_force}
     return METHOD.findall(xml)[0], {
@@ -45,12 +48,14 @@ def main() -> None:
     """Print one line for each log that is not without a gap, and how many are, by record and integrator."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--seeds", type=int, default=50)
-    count = parser.parse_args().seeds
+    parser.add_argument("--steps", type=int, default=1, help="Of the model in a row of the log.")
+    args = parser.parse_args()
+    count = args.seeds
     drawn: Counter[str] = Counter()
     healthy: Counter[tuple[str, str]] = Counter()
     records: dict[str, None] = {}
     for seed in range(FIRST, FIRST + count):
-        method, found = answers(seed)
+        method, found = answers(seed, args.steps)
         drawn[method] += 1
         for record, answer in found.items():
             records[record] = None

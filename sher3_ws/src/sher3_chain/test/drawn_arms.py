@@ -21,7 +21,7 @@ SECONDS, NOISE = 16.0, 1e-5
 
 @dataclass(frozen=True)
 class Logged:
-    """A log, one row for each step: `time` (n,), `ctrl`, `qpos`, `qvel`, `actuator_force` (n, k), and the model."""
+    """A log, a row for each step or some: `time` (n,), `ctrl`, `qpos`, `qvel`, `actuator_force` (n, k), the model."""
 
     xml: str
     time: NDArray[np.float64]
@@ -134,19 +134,23 @@ def log_of_servos(model: mujoco.MjModel, rng: np.random.Generator, seconds: floa
     return {"time": stamps, "ctrl": ctrl, "qpos": noisy, "actuator_force": force}
 
 
-def logged(xml: str, seed: int) -> Logged:
-    """Run a model along drawn sines and return its log; motors are driven by a PD law outside the model."""
+def logged(xml: str, seed: int, steps: int = 1) -> Logged:
+    """Run a model along drawn sines and return its log, a row every `steps` in which controls hold.
+
+    Motors are driven by a PD law outside the model.
+    """
     model = mujoco.MjModel.from_xml_string(xml)
     data, rng, k = mujoco.MjData(model), np.random.default_rng(seed), model.nu
     gear = model.actuator_gear[:, 0]
     servo = model.actuator_biastype[0] == mujoco.mjtBias.mjBIAS_AFFINE
     stiff = 300.0 * 0.5 ** np.arange(k)
     rows = []
-    for place in asked(rng, np.arange(round(SECONDS / model.opt.timestep)) * model.opt.timestep, k):
+    period = steps * model.opt.timestep
+    for place in asked(rng, np.arange(round(SECONDS / period)) * period, k):
         data.ctrl[:] = place * gear if servo else (stiff * (place - data.qpos) - 0.05 * stiff * data.qvel) / gear
         mujoco.mj_forward(model, data)
         rows.append([data.time, *data.ctrl, *data.qpos, *data.qvel, *data.actuator_force])
-        mujoco.mj_step(model, data)
+        mujoco.mj_step(model, data, steps)
     all_rows = np.array(rows)
     parts = [all_rows[:, 1 + i * k : 1 + (i + 1) * k] for i in range(4)]
     parts[1] = parts[1] + NOISE * rng.standard_normal(parts[1].shape)

@@ -13,6 +13,7 @@ from sher3_chain.manipulator.draft import of_arm
 from sher3_chain.manipulator.kind import arm_of
 from sher3_diagnosis.machine import Machine
 from sher3_machines.drafting.draft import drafted
+from sher3_machines.drafting.guesses import period_of_log
 from sher3_machines.errors import MachineError
 from sher3_machines.intake.fields import Description
 from sher3_machines.intake.kinds import kinds, load_description
@@ -67,7 +68,8 @@ def case_of_tables(model: object, tables: Sequence[Tables], rate: float | None, 
         raise InputError("inertias are those of an arm's model", value="no model", remedy="give the arm's MJCF or URDF")
     if source is not None:
         drives = of_tables.drives_of(source.bodies, tables[0], data, stated)
-        data = of_arm(data, source.bodies, guesses, drives, stated.simulated)
+        period = period_of_log(data["time"], tables[0])
+        data = of_arm(data, source.bodies, guesses, drives, stated.simulated, period)
         source = source if data["kind"] == "manipulator" else None  # no model belongs to servos by themselves
     if source is not None:
         data["inertias"] = stated.inertias

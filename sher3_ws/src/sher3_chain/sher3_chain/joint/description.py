@@ -48,6 +48,8 @@ class CommandLaw(Strict):
         limit: largest command, where known.
         held: whether a command acts from its stamp to the next one; otherwise it is the force at its stamp.
         goal: constant reference, m or rad, where none was recorded.
+        loop: period of the loop that takes the control of a simulated joint, s: its force is that at the begin of a
+            row. In a slower log the control may hold from row to row.
     """
 
     kind: Literal["force", "position", "none"]
@@ -58,6 +60,7 @@ class CommandLaw(Strict):
     limit: float | None = Field(default=None, gt=0.0)
     held: bool = False
     goal: float | None = None
+    loop: float | None = Field(default=None, gt=0.0)
 
 
 class Gravity(Strict):

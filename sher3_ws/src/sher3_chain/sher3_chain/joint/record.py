@@ -96,7 +96,9 @@ def axes_run(name: str, tables: Tables, machine: ChainDescription) -> AxesRun:
     mended += signs
     for axis in machine.chain:
         raw[axis.name] = {
-            which: _mended(column, tables, machine.time, name, (axis.name, which), mended)
+            which: _mended(
+                column, tables, machine.time, name, (axis.name, which), mended, axis.command_law.loop is not None
+            )
             for which, column in _columns(axis).items()
         }
         summed = {which for which, column in _columns(axis).items() if is_speed(column, tables, name)}
@@ -116,8 +118,13 @@ def axes_run(name: str, tables: Tables, machine: ChainDescription) -> AxesRun:
     return AxesRun(name, period, signals, [*dict.fromkeys(mended), *notes])
 
 
-def _mended(column: Column, tables: Tables, clock: Clock, run: str, of: tuple[str, str], notes: list[str]) -> Stamped:
-    """Return the readings of a column with their stamps, without those that are missing or written twice."""
+def _mended(
+    column: Column, tables: Tables, clock: Clock, run: str, of: tuple[str, str], notes: list[str], steps: bool = False
+) -> Stamped:
+    """Return the readings of a column with their stamps, without those that are missing or written twice.
+
+    A reference in `steps` is one that its drive takes as it is.
+    """
     stamps, x = stamps_of(column, tables, clock, run), pick(column, tables, run, finite=False)
     what = f"{run}: {of[0]}.{of[1]} ({column.column})"
     if x.ndim != 1:
@@ -133,7 +140,7 @@ def _mended(column: Column, tables: Tables, clock: Clock, run: str, of: tuple[st
     known, note = known_readings(x, stamps is not None, what)
     notes += [note] if note else []
     stamps, x = _only(stamps, x, known)
-    may_be_held = of[1] in (*READINGS, "reference")
+    may_be_held = of[1] in READINGS or (of[1] == "reference" and not steps)
     fresh = fresh_readings(x, steps=of[1] not in ENCODERS) if may_be_held else np.ones(len(x), dtype=bool)
     if not fresh.all() and (of[1] in READINGS or goes_smoothly(x[fresh])):
         stamps, x = _only(stamps, x, fresh)

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from sher3_machines.drafting.draft import drafted, written
+from sher3_machines.drafting.guesses import period_of_log
 from sher3_machines.drafting.names import EFFORT, words_of
 from sher3_machines.drafting.unnamed import as_recorded, named_by_blocks, renamed
 from sher3_machines.errors import MachineError
@@ -46,8 +47,11 @@ def draft_arm(path: Path, model: Path, rate: float | None = None, tables: Tables
     guesses: list[str] = []
     bodies, tables = read_bodies(model), longest(path) if tables is None else tables
     names = named_by_blocks(tables, rate, len(bodies.joints), guesses)
-    chain = drafted(path, renamed(names, tables) if names else tables, rate, guesses, held=True)
-    return written(as_recorded(of_arm(chain, bodies, guesses), names), guesses)
+    tables = renamed(names, tables) if names else tables
+    chain = drafted(path, tables, rate, guesses, held=True)
+    return written(
+        as_recorded(of_arm(chain, bodies, guesses, period=period_of_log(chain["time"], tables)), names), guesses
+    )
 
 
 def of_arm(
@@ -56,6 +60,7 @@ def of_arm(
     guesses: list[str],
     drives: Mapping[str, Driven] | None = None,
     simulated: bool | None = None,
+    period: float = 0.0,
 ) -> dict[str, Any]:
     """Return a drafted chain of axes as the joints of a model; raises MachineError where they do not fit.
 
@@ -67,6 +72,7 @@ def of_arm(
         guesses: so far; those on driving and mass of single axes are taken out.
         drives: in place of the model's.
         simulated: whether efforts are a simulator's own; default by the names of their columns.
+        period: of the log, s; 0: not known.
     """
     slides, drives = model.joints, model.drives if drives is None else drives
     axes = {axis["name"]: axis for axis in data["axes"]}
@@ -85,7 +91,7 @@ def of_arm(
             own = drives[joint["name"]]
             if "actuator" in words and "qfrc" not in words and own.drive is not None and own.drive.gear != 1.0:
                 effort["factor"] = own.drive.gear
-            drive_joint(joint, own, bool(words & OWN_EFFORT) if simulated is None else simulated, guesses)
+            drive_joint(joint, own, bool(words & OWN_EFFORT) if simulated is None else simulated, guesses, period)
     if unforced := [j for j in joints if "reference" in j["signals"] and not _has_force(j)]:
         names = [j["name"] for j in unforced]
         why = dict.fromkeys(f"; {drives[name].reason}" for name in names if name in drives)

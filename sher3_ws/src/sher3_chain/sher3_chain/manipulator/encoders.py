@@ -37,7 +37,7 @@ AT_REST = 0.2
 """Speed of a link over that of the two encoders against each other below which friction holds it."""
 
 
-def links_of(run: JointSignals, joints: Sequence[Joint], model: ArmModel, coupling: Array) -> AxisSignals:
+def links_of(run: JointSignals, joints: Sequence[Joint], model: ArmModel, coupling: Array) -> JointSignals:
     """Return the signals of a run with the positions of the links in place of the motors'.
 
     Args:

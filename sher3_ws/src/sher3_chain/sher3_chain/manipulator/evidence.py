@@ -25,6 +25,7 @@ from sher3_chain.manipulator.identification.gains import backwards, share_of
 from sher3_chain.manipulator.identification.inertias import Inertias, identified_inertias
 from sher3_chain.manipulator.model import ArmModel
 from sher3_chain.manipulator.readings.floors import resolution_floors
+from sher3_chain.manipulator.readings.held import power_left, ways_to_act
 from sher3_chain.manipulator.readings.mounted import mounted
 from sher3_chain.manipulator.readings.senses import against_model
 from sher3_chain.manipulator.readings.senses import turned as turned_round
@@ -52,6 +53,7 @@ class ArmMotionEvidence(ChainEvidence):
         inertias: what was identified of links and rotors beyond the model; None: they are taken as modelled.
         gravity: (3,) in the frame of the base, m/s^2, where it pulls otherwise than the model says; None: as modelled.
         slips: joint -> times by which its effort is in another scale than its stated gain says; they are not judged.
+        acting: how controls act between the rows of a log that is slower than its drives; empty: as read.
     """
 
     described: ManipulatorDescription
@@ -64,6 +66,7 @@ class ArmMotionEvidence(ChainEvidence):
     against: Sequence[str] = ()
     inertias: Inertias | None = None
     gravity: Array | None = None
+    acting: str = ""
 
     def own_unit(self, unit: str, site: str) -> str:
         """Return the unit of a parameter, with forces as they were recorded where no gain is stated."""
@@ -118,6 +121,13 @@ def gather_arm_motion(
         signals = [joint_signals(run, described, "repeats" if repeats else run.name) for run in read]
         links = [links_of(s, described.joints, model, coupling) for s in signals]
         plain = seen_by(model, np.ones(n))
+    best, acting = (signals, links, plain), ""
+    for note, acted in ways_to_act(plain, described, judged).items():
+        signals, links = acted, [links_of(s, described.joints, model, coupling) for s in acted]
+        other = seen_by(model, np.ones(n))
+        if power_left(other, judged) < power_left(best[2], judged):
+            best, acting = (acted, links, other), note
+    signals, links, plain = best
     found = {name: share_of(plain, name) for name in judged}
     stated = {j.name for j in described.joints if not isinstance(j.gain, str)}
     own = [j.name for j in described.joints if j.gain == PER_RUN and j.name in judged]
@@ -171,6 +181,7 @@ def gather_arm_motion(
         against=against,
         inertias=inertias,
         gravity=gravity,
+        acting=acting,
     )
 
 

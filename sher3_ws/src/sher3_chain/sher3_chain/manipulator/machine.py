@@ -163,6 +163,7 @@ class Manipulator(Chain[ArmMotionEvidence]):
                 f"the arm hangs otherwise than its model: gravity of ({x:.2f}, {y:.2f}, {z:.2f}) m/s^2 in the frame of "
                 "its base explains the efforts, and was taken; `gravity` states it"
             )
+        notes += [evidence.acting] if evidence.acting else []
         if evidence.against:
             notes.append(
                 f"{', '.join(evidence.against)}: recorded in the other sense than the model has: place and effort were "

@@ -19,7 +19,6 @@ from sher3_chain.manipulator.model import PARAMETERS, ROUNDED, ArmModel, point_i
 from sher3_chain.manipulator.signals import JointSignals
 from sher3_chain.readings.level import at_a_level, off
 from sher3_chain.readings.orders import orders_in
-from sher3_chain.readings.signals import AxisSignals
 
 AROUND_IMPACT = 2
 """Samples of the residual grid around one at which a gap is crossed: the filter smears the impact at its end."""
@@ -46,7 +45,7 @@ class MotionView(ChainView):
     def __init__(
         self,
         run: JointSignals,
-        links: AxisSignals,
+        links: JointSignals,
         joints: Sequence[Joint],
         model: ArmModel,
         coupling: Array,
@@ -187,7 +186,8 @@ class MotionView(ChainView):
         if losses is None:
             return np.zeros_like(run.smooth)
         q, v = (x @ back for x in (run.smooth, run.velocity))
-        return losses.dry(q, v, np.gradient(v, run.period, axis=0))
+        a = np.gradient(v, run.period, axis=0)
+        return run.over_rows(lambda late: losses.dry(q, v + late * a, a))
 
     @cached_property
     def _of_links(self) -> tuple[Array, Array, Array]:

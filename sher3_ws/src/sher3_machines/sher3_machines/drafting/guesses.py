@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import Any
+
 import numpy as np
 from sher3_diagnosis.channel import Array
 from sher3_diagnosis.localise.floors import noise_of_bends
@@ -130,6 +133,14 @@ def period_of(stamps: Array) -> float:
     usual = steps[steps >= 0.0]
     middle = usual[usual <= max(float(np.quantile(usual, 0.95)), 0.0)] if len(usual) else usual
     return float(middle.mean()) if len(middle) and middle.mean() > 0.0 else float("nan")
+
+
+def period_of_log(time: Mapping[str, Any], tables: Tables) -> float:
+    """Return the period of a log, s, by the clock of its draft."""
+    stamps = next((x for name, x in tables.items() if time.get("column") in (name, bare(name))), None)
+    if stamps is None:
+        return 1.0 / (time.get("rate") or 1.0)
+    return float(TIME_UNITS[time["unit"]] * np.median(np.diff(stamps)))
 
 
 def time_unit(clock: str, stamps: Array, guesses: list[str]) -> str:

@@ -69,7 +69,7 @@ def described(source: Source, runs: Sequence[Arrays], stated: Stated) -> Describ
     own = simulated(joints, names, controls, runs[0], source.bodies.mujoco, drives, stated.simulated, guesses)
     for joint in joints:
         if joint["name"] in drives:
-            drive_joint(joint, drives[joint["name"]], own, guesses)
+            drive_joint(joint, drives[joint["name"]], own, guesses, float(np.median(np.diff(runs[0].time))))
             stated.delayed(joint, guesses)
         elif "command" in joint["signals"]:
             joint["signals"].pop("command")

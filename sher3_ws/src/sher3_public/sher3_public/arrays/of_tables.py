@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from sher3_chain.manipulator.bodies import Bodies
 from sher3_chain.manipulator.mjcf.drives import Driven
+from sher3_machines.drafting.guesses import period_of_log
 from sher3_machines.intake.columns import IN_HEADER
-from sher3_machines.intake.fields import TIME_UNITS
 from sher3_machines.intake.spelling import bare
 from sher3_machines.intake.tables import Tables
 
@@ -50,10 +50,7 @@ def in_si(tables: Sequence[Tables], chain: Mapping[str, Any], stated: Stated) ->
 
 def drives_of(bodies: Bodies, table: Tables, chain: Mapping[str, Any], stated: Stated) -> Mapping[str, Driven]:
     """Return joint -> its drive, the model's or the servo that is stated; raises InputError for a wrong name."""
-    time = chain["time"]
-    stamps = next((x for n, x in table.items() if time.get("column") in (n, bare(n))), None)
-    scale = TIME_UNITS[time["unit"]] if stamps is not None else 1.0 / (time.get("rate") or 1.0)
-    seconds = scale * (np.arange(2.0) if stamps is None else stamps)
+    seconds = period_of_log(chain["time"], table) * np.arange(2.0)
     return stated.drives(bodies, list(bodies.joints), Arrays(seconds, np.empty((0, 0))))
 
 

@@ -90,7 +90,7 @@ class Stated:
         found = dict(bodies.drives)
         for name, (stiffness, damping) in gains.items():
             behind = Step(-0.5 * float(np.median(np.diff(run.time))) * float(damping))
-            own = found.get(name) or Driven(bodies.joints[name], Step(), behind, 0.0, None)
+            own = found.get(name) or Driven(bodies.joints[name], Step(), behind, 0.0, None, None)
             width = 0 if run.control is None else run.control.shape[1]
             number = own.drive.number if own.drive is not None and width != len(names) else list(names).index(name)
             limit, delay = (None, 0.0) if own.drive is None else (own.drive.limit, own.drive.delay)

@@ -28,6 +28,8 @@ CLAMP_OFF = 1 << 7
 
 NO_DELAY: Mapping[int, float] = defaultdict(float)
 """Delay of each actuator, s, in versions of MuJoCo before 3.4 that have none."""
+SLOWER = 1.5
+"""Steps in a row from which a log is slower than its simulator."""
 TENDON, WRAPPED_JOINT = 3, 1
 """MuJoCo's numbers of a transmission by a tendon (mjtTrn), and of a joint in a tendon (mjtWrap)."""
 
@@ -89,6 +91,7 @@ class Driven:
         recorded, of_law: what a step adds to the force that the simulator recorded, and to that of the drive's law by
             the speed of central differences.
         damping: of the joint in the model, N/(m/s) or N m/(rad/s).
+        loop: time step of the model, s; None: of no simulator.
         drive: its actuator; None: none, or none whose force is a line in control, place and speed.
         reason: why there is no drive.
     """
@@ -97,6 +100,7 @@ class Driven:
     recorded: Step
     of_law: Step
     damping: float
+    loop: float | None
     drive: Drive | None
     reason: str = ""
 
@@ -129,7 +133,7 @@ def _driven(source: Any, joint: int) -> Driven:
     elif method == EULER:
         own = half * damping * (-1.0 if source.opt.disableflags & EULER_DAMP else 1.0)
         recorded, of_law = Step(own), Step(own - half * gain)
-    return Driven(source.jnt_type[joint] == SLIDE, recorded, of_law, damping, drive, reason)
+    return Driven(source.jnt_type[joint] == SLIDE, recorded, of_law, damping, 2.0 * half, drive, reason)
 
 
 def _followed(mass: float, damping: float, stiffness: float, gain: float, step: float) -> Step:

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import Any
 
-from sher3_chain.manipulator.mjcf.drives import Drive, Driven, Step
+from sher3_chain.manipulator.mjcf.drives import SLOWER, Drive, Driven, Step
 
 OWN_EFFORT = frozenset(("actuator", "qfrc"))
 """Words in a column's name by which an effort is MuJoCo's own: `actuator_force`, `qfrc_actuator`."""
 
 
-def drive_joint(joint: dict[str, Any], own: Driven, simulated: bool, guesses: list[str]) -> None:
+def drive_joint(joint: dict[str, Any], own: Driven, simulated: bool, guesses: list[str], period: float = 0.0) -> None:
     """Write what a model says of the drive of a joint into the joint's part of a description.
 
     The control of a servo is its reference, that of a motor its force. Without a recorded effort the law of the drive
@@ -21,6 +21,7 @@ def drive_joint(joint: dict[str, Any], own: Driven, simulated: bool, guesses: li
         own: of the joint in the model.
         simulated: whether a recorded effort is the simulator's own.
         guesses: so far; what is taken from the model is added.
+        period: of the log, s.
     """
     name, signals, drive = joint["name"], joint["signals"], own.drive
     measured = "effort" in signals
@@ -30,15 +31,19 @@ def drive_joint(joint: dict[str, Any], own: Driven, simulated: bool, guesses: li
             known = "" if measured else "; record efforts, this joint is not judged"
             guesses.append(f"{name}: its control is not used, because {own.reason}{known}")
     elif drive.servo:
-        if step.damping and {"command", "reference"} & signals.keys():
+        within = step.damping or (simulated and measured and own.loop is not None and period > SLOWER * own.loop)
+        if within and {"command", "reference"} & signals.keys():
             signals.pop("effort")
-            guesses.append(f"{name}: the effort is that of its law, which the simulator follows within a step")
+            guesses.append(f"{name}: the effort is that of its law, which the simulator follows within a row")
         _servo(joint, drive, guesses)
         if "reference" in signals and "effort" not in signals:
             step = own.of_law
     else:
         _motor(joint, drive, guesses)
         step = own.recorded if simulated or not measured else step
+    if own.loop and (simulated or "effort" not in signals):
+        law = _gains(drive) if drive is not None and drive.servo else {}
+        joint["command_law"] = {"kind": "force", **law, **joint.get("command_law", {}), "loop": own.loop}
     _stepped(joint, own, step, guesses)
 
 
@@ -68,13 +73,16 @@ def _servo(joint: dict[str, Any], drive: Drive, guesses: list[str]) -> None:
     if "reference" not in signals:
         return
     _delayed(signals["reference"], joint, drive, guesses)
-    law = {"kind": "force", "position_gain": drive.position_gain, "velocity_gain": drive.velocity_gain}
-    joint["command_law"] = {**law, **({"limit": drive.limit} if drive.limit else {})}
+    joint["command_law"] = {"kind": "force", **_gains(drive), **({"limit": drive.limit} if drive.limit else {})}
     if "effort" not in signals:
         _force_known(joint, guesses)
     text = f"{joint['name']}: its control is the reference of servo {drive.name}"
     force = f"{drive.position_gain:.4g} (reference - q) - {drive.velocity_gain:.4g} v"
     guesses.append(text if "effort" in signals else f"{text}, whose force is {force}: no effort was recorded")
+
+
+def _gains(drive: Drive) -> dict[str, float]:
+    return {"position_gain": drive.position_gain, "velocity_gain": drive.velocity_gain}
 
 
 def _motor(joint: dict[str, Any], drive: Drive, guesses: list[str]) -> None:

@@ -15,6 +15,8 @@ from sher3_chain.floors.innovation import NOTHING, white_behind
 from sher3_chain.manipulator.description import PER_RUN
 from sher3_chain.manipulator.view import MotionView
 
+ALONE = 0.1
+"""Share of what a servo gives within a row that a joint by itself, in the middle posture, does not say."""
 POSTURES = 100
 """Postures of a record at which the inertia is reckoned: an rms over them is known to a few per cent."""
 
@@ -22,7 +24,8 @@ POSTURES = 100
 def resolution_floors(view: MotionView) -> Floors:
     """Return what counts of efforts and encoders make of every joint's balance, and of its encoders' difference."""
     floors: Floors = {}
-    for joint, coarse in zip(view.joints, coarseness(view), strict=True):
+    within = 0.0 if view.run.within is None else ALONE * view.run.within
+    for joint, coarse in zip(view.joints, np.hypot(coarseness(view), within), strict=True):
         step = 0.0 if joint.gain == PER_RUN else joint.effort_resolution  # stated in a unit that is gone
         force, count = float(np.hypot(step / UNIFORM, coarse)), np.sqrt(2.0) * joint.encoder_resolution / UNIFORM
         floors[Channel("motor_mechanics", joint.name)] = np.array([max(force, NOTHING)])
