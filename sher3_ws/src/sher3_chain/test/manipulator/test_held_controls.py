@@ -1,5 +1,7 @@
 """Logs that are slower than the loop that takes their controls: each control holds from row to row, or goes on."""
 
+from types import SimpleNamespace
+
 import mujoco
 import numpy as np
 import pytest
@@ -93,12 +95,9 @@ def test_a_control_that_holds_is_late_by_half_a_row_less_half_a_step():
 
 
 def test_what_a_servo_does_within_a_row_vanishes_with_the_row():
-    class Joint:
-        step_inertia = 0.0
-
     law = CommandLaw(kind="force", position_gain=400.0, velocity_gain=20.0, loop=STEP)
-    drive = Driven(Joint(), 0.5, 0.5)
-    each = [within_a_row(drive, law, n * STEP, n) for n in (1, 2, 5, 10)]
+    drive = Driven(SimpleNamespace(command_law=law), 0.5, 0.5)
+    each = [within_a_row(drive, SimpleNamespace(period=n * STEP, steps=n)) for n in (1, 2, 5, 10)]
     assert each[0] == (0.0, 0.0, 1.0, 0.0)
     sizes = [abs(x.inertia) for x in each]
     assert sizes == sorted(sizes)

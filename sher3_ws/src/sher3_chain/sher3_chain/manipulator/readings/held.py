@@ -16,7 +16,6 @@ import numpy as np
 from sher3_diagnosis.channel import Array
 from sher3_machines.intake.mending.repeats import filled, fresh_readings, goes_smoothly
 
-from sher3_chain.joint.description import CommandLaw
 from sher3_chain.manipulator.description import Joint, ManipulatorDescription
 from sher3_chain.manipulator.mjcf.drives import SLOWER
 from sher3_chain.manipulator.signals import JointSignals
@@ -88,35 +87,55 @@ def _acting(run: JointSignals, drives: Mapping[int, Driven], way: Acts) -> Joint
     assert run.effort is not None
     steps = max(run.period / (drive.joint.command_law.loop or run.period) for drive in drives.values())
     slow = replace(run, steps=steps if way is held and steps >= SLOWER else 1.0)
-    speed, acceleration = slow.speed_of(run.motor), slow.acceleration
     effort, reference = run.effort.copy(), None if run.reference is None else run.reference.copy()
     changed, within = False, np.zeros(effort.shape[1])
     for row, drive in drives.items():
-        law, q, v, a = drive.joint.command_law, run.motor[:, row], speed[:, row], acceleration[:, row]
-        asked = reference is not None and drive.joint.signals.reference is not None
-        if law.position_gain is None:
-            goal = effort[:, row].copy()
-            effort[:, row] = acts = slow.at_rows(way(goal, slow.steps))
-            changed |= not np.array_equal(acts, goal)
-            continue
-        own = within_a_row(drive, law, run.period, slow.steps)
-        more = own.inertia * a + own.damping * v
-        if asked and reference is not None:
-            goal = reference[:, row]
-        else:  # of which the recorded force is, by the speed at the begin of a row
-            begin = law.velocity_gain * (own.begins * v + own.behind * a)
-            goal = q + (effort[:, row] + begin) / law.position_gain
-            within[row] = np.std(slow.to_grid(begin - law.velocity_gain * v))
-        acts = slow.at_rows(way(goal, slow.steps))
-        changed |= not np.array_equal(acts, goal)
-        limit = np.inf if law.limit is None else law.limit
-        force = np.clip(law.position_gain * (acts - q) - law.velocity_gain * v, -limit, limit)
-        stepped = 0.5 * (law.loop or 0.0) * law.velocity_gain if drive.joint.signals.effort else 0.0
-        effort[:, row] = force - more + stepped * a
-        within[row] = np.hypot(within[row], np.std(slow.to_grid(more)))
-        if asked and reference is not None:
+        asked = _asked(slow, row, drive)
+        acts = slow.at_rows(way(asked, slow.steps))
+        changed |= not np.array_equal(acts, asked)
+        effort[:, row], within[row] = _given(slow, row, drive, acts)
+        if reference is not None and drive.joint.signals.reference is not None:
             reference[:, row] = acts
     return replace(slow, effort=effort, reference=reference, within=within) if changed else run
+
+
+def _asked(run: JointSignals, row: int, drive: Driven) -> Array:
+    """Return what a drive was asked for, (n,): a force, or a place; that of the recorded force where none was logged.
+
+    The force is that at the begin of a row, by the speed which the step before left.
+    """
+    assert run.effort is not None
+    law, force = drive.joint.command_law, run.effort[:, row]
+    if law.position_gain is None:
+        return force
+    if run.reference is not None and drive.joint.signals.reference is not None:
+        return run.reference[:, row]
+    own = within_a_row(drive, run)
+    begin = own.begins * run.speed_of(run.motor)[:, row] + own.behind * run.acceleration[:, row]
+    return np.asarray(run.motor[:, row] + (force + law.velocity_gain * begin) / law.position_gain)
+
+
+def _given(run: JointSignals, row: int, drive: Driven, acts: Array) -> tuple[Array, float]:
+    """Return the force (n,) that a drive gives around each row, and how much of it is put right, rms.
+
+    Args:
+        run: with the steps in a row.
+        row: of the joint.
+        drive: of the joint.
+        acts: force or place that it was asked for, (n,), at each row.
+    """
+    law, q = drive.joint.command_law, run.motor[:, row]
+    if law.position_gain is None:
+        return acts, 0.0
+    own, v, a = within_a_row(drive, run), run.speed_of(run.motor)[:, row], run.acceleration[:, row]
+    limit = np.inf if law.limit is None else law.limit
+    force = np.clip(law.position_gain * (acts - q) - law.velocity_gain * v, -limit, limit)
+    right = own.inertia * a + own.damping * v
+    within = [right]
+    if drive.joint.signals.effort is not None:  # what a step adds is that of a recorded force there
+        force = force + 0.5 * (law.loop or 0.0) * law.velocity_gain * a
+        within.append(law.velocity_gain * ((own.begins - 1.0) * v + own.behind * a))
+    return force - right, float(np.hypot.reduce([np.std(run.to_grid(x)) for x in within]))
 
 
 def held(control: Array, steps: float) -> Array:
@@ -148,7 +167,7 @@ class Within(NamedTuple):
     behind: float = 0.0
 
 
-def within_a_row(drive: Driven, law: CommandLaw, period: float, steps: float) -> Within:
+def within_a_row(drive: Driven, run: JointSignals) -> Within:
     """Return what a servo does within a row, while its control holds.
 
     The joint by itself is a linear system, stepped as implicit methods do. Each row has a control of its own, chosen so
@@ -157,11 +176,9 @@ def within_a_row(drive: Driven, law: CommandLaw, period: float, steps: float) ->
 
     Args:
         drive: the joint.
-        law: of its servo.
-        period: of the log, s.
-        steps: of the loop in one of its rows.
+        run: its period, s, and the steps of the loop in one of its rows.
     """
-    n = round(steps)
+    law, period, n = drive.joint.command_law, run.period, round(run.steps)
     if n == 1 or not law.position_gain:
         return Within()
     h, gain, loss = period / n, law.position_gain, law.velocity_gain + drive.damping
