@@ -103,8 +103,8 @@ def _panel(panel: Panel, across: tuple[float, float], top: float, numbered: bool
         look = f'stroke="{line.colour}" stroke-width="1.2" stroke-linejoin="round"'
         out.append(f'<path d="{_path(x(line.x), y(line.y))}" {look}/>')
     key = (
-        f'<tspan fill="{colour}" opacity="{opacity}">■</tspan><tspan dx="4">{escape(said)}</tspan><tspan dx="12"/>'
-        for colour, opacity, said in labels
+        f'<tspan dx="{14 * (i > 0)}" fill="{colour}" opacity="{opacity}">■</tspan><tspan dx="4">{escape(said)}</tspan>'
+        for i, (colour, opacity, said) in enumerate(labels)
     )
     out.append(f'<text x="{LEFT}" y="{top - 5}" fill="{INK}">{"".join(key)}</text>')
     middle = f"translate(11,{(top + bottom) / 2:.0f}) rotate(-90)"
