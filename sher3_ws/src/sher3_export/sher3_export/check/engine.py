@@ -193,6 +193,6 @@ def compiled(text: str, joints: Sequence[str], gears: Mapping[str, tuple[int, fl
             joint = api.mj_id2name(model, api.mjtObj.mjOBJ_JOINT, int(model.actuator_trnid[number][0]))
             gain = float(model.actuator_gainprm[number][0])
             if joint in joints and joint not in gears and gain:
-                servo = float(model.actuator_biasprm[number][1]) != 0.0
-                gears[joint] = (number, 1.0 if servo else gain * float(model.actuator_gear[number][0]))
+                gear, stiffness = float(model.actuator_gear[number][0]), -float(model.actuator_biasprm[number][1])
+                gears[joint] = (number, gain / (stiffness * gear) if stiffness else gain * gear)
     return Engine(model, gears)

@@ -12,6 +12,7 @@ from sher3_chain.joint.description import Axis
 from sher3_chain.joint.record import AxesRun
 from sher3_chain.manipulator.description import Joint, ManipulatorDescription
 from sher3_chain.manipulator.machine import Manipulator
+from sher3_chain.manipulator.mjcf.drives import SLOWER
 from sher3_common.numbers.smoothing import savitzky_golay
 from sher3_diagnosis.channel import Array
 
@@ -20,7 +21,7 @@ from sher3_export.errors import ExportError
 SMOOTH = 0.01
 """Half the time, s, over which a start speed is taken: long against a count, short against a motion."""
 LEAST = 4
-"""Samples of that half at least: a parabola through fewer follows the counts."""
+"""Samples of that half at least: a parabola through fewer follows the counts. In a slower log it is one."""
 
 
 @dataclass(frozen=True)
@@ -102,13 +103,18 @@ def on_joints(
 def track_of(run: AxesRun, axis: Axis, q: Array, drive: Array | None, late: bool) -> Track:
     """Return the track of one axis, of its places and forces (n,)."""
     signals = run.signals[axis.name]
-    half = max(LEAST, round(SMOOTH / run.period))
+    half = max(LEAST, round(SMOOTH / run.period)) if run.period < SMOOTH else 1
     smooth = [savitzky_golay(q, 2 * half + 1, 2, k, run.period) for k in (0, 1)]
     load = signals.get("load")
     behind = None if load is None else load - q
-    servo = axis.servo or (late and isinstance(axis, Joint) and axis.follows)
+    servo = axis.servo or (isinstance(axis, Joint) and axis.follows and (late or holds(axis, run.period)))
     drive = signals["reference"] if servo else drive
     return Track(smooth[0], smooth[1], q if load is None else load, behind, drive, axis.unit_of_position, servo)
+
+
+def holds(joint: Joint, period: float) -> bool:
+    """Return whether the servo of a joint goes on within a row of the log, s: no force of its rows says how."""
+    return joint.by_its_law and joint.command_law.loop is not None and period > SLOWER * joint.command_law.loop
 
 
 def drive_of(signals: Mapping[str, Array], axis: Axis, late: bool) -> Array | None:
