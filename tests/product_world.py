@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import contextlib
-import copyreg
 import io
 import pickle
 from dataclasses import dataclass, field
 from enum import Enum
-from itertools import count
 from struct import Struct
 from typing import Any
 
@@ -196,7 +194,7 @@ class _Freezer(pickle.Pickler):
     """Asks about instances alone, a tenth of the things in a world; texts, numbers and tuples of them take no call."""
 
     def reducer_override(self, thing: Any) -> Any:
-        if isinstance(thing, (Enum, Struct, np.dtype, AxisScale)) and id(thing) not in _NUMBERS:
+        if isinstance(thing, (Enum, Struct, np.dtype)) and id(thing) not in _NUMBERS:
             _NUMBERS[id(thing)] = len(SHARED)
             SHARED.append(thing)
         number = _NUMBERS.get(id(thing))
@@ -396,16 +394,3 @@ class World:
             frozenset((drives[i], seen[i], words[i]) for i in others),
             tuple(len(end.extra) for end in self.ends),
         )
-
-
-class _Coder(pickle.Unpickler):
-    """Numbers the classes of a frozen world, which are found by number from then on: names are a third of a thaw."""
-
-    _codes = count(1)
-
-    def find_class(self, module: str, name: str) -> Any:
-        copyreg.add_extension(module, name, next(self._codes))
-        return super().find_class(module, name)
-
-
-_Coder(io.BytesIO(World().freeze())).load()
