@@ -9,7 +9,7 @@ from typing import ClassVar
 
 import numpy as np
 from sher3_diagnosis.channel import Array
-from sher3_effects.motion import second_difference
+from sher3_effects.operators import second_difference
 
 from sher3_chain.joint.record import AxesRun
 from sher3_chain.manipulator.description import ManipulatorDescription
@@ -51,7 +51,7 @@ class JointSignals(AxisSignals):
         A central difference is the mean of a speed over two rows, x + x'' T^2 / 6 of it.
         """
         mean = np.gradient(x, self.period, axis=0)
-        return mean - (1.0 - self.steps**-2) / 6.0 * bend(mean)
+        return mean - (1.0 - self.steps**-2) / 6.0 * second_difference(mean, 1.0)
 
     def over_rows(self, force: Callable[[float], Array]) -> Array:
         """Return a force (n, k) that turns within a row, at each row.
@@ -70,14 +70,7 @@ class JointSignals(AxisSignals):
 
         They weigh as a triangle, x + x'' T^2 / 12 of what goes on evenly, as a second difference weighs accelerations.
         """
-        return np.asarray(mean - (1.0 - self.steps**-2) / 12.0 * bend(mean))
-
-
-def bend(x: Array) -> Array:
-    """Return second differences of signals (n, ...), zero at both ends."""
-    out = np.zeros_like(x)
-    out[1:-1] = np.diff(x, 2, axis=0)
-    return out
+        return np.asarray(mean - (1.0 - self.steps**-2) / 12.0 * second_difference(mean, 1.0))
 
 
 def joint_signals(run: AxesRun, described: ManipulatorDescription, excitation: str) -> JointSignals:

@@ -8,7 +8,7 @@ import pytest
 import sher3.gap as gap
 from drawn_arms import NOISE, asked, drawn_xml, logged
 from sher3_chain.joint.description import CommandLaw
-from sher3_chain.manipulator.readings.held import Driven, held, within_a_row
+from sher3_chain.manipulator.readings.held import Single, held, within_a_row
 
 STEP, SECONDS = 0.002, 12.0
 HOLD, GO_ON = "controls hold from row to row", "controls go on evenly"
@@ -99,7 +99,7 @@ def test_a_control_that_holds_is_late_by_half_a_row_less_half_a_step():
 
 def test_what_a_servo_does_within_a_row_vanishes_with_the_row():
     law = CommandLaw(kind="force", position_gain=400.0, velocity_gain=20.0, loop=STEP)
-    drive = Driven(SimpleNamespace(command_law=law), 0.5, 0.5)
+    drive = Single(SimpleNamespace(command_law=law), 0.5, 0.5)
     each = [within_a_row(drive, SimpleNamespace(period=n * STEP, steps=n)) for n in (1, 2, 5, 10)]
     assert each[0] == (0.0, 0.0, 1.0, 0.0)
     sizes = [abs(x.inertia) for x in each]

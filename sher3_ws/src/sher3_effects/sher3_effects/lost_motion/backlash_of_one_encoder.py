@@ -129,9 +129,8 @@ class BacklashBeforeEncoder(Page):
         count, travel = hidden.step, max(v.axis(site).travel for v in views)
         widths = np.geomspace(count, max(travel, 2.0 * count), self.TRIED)
         least = next((w for w in widths if hidden.shows({"force": 0.5 * float(w), "late": 0.0})), None)
-        return (
-            f"{f'play before it above {rounded(least, hidden.units[0])}' if least else 'no play before it'} would show"
-        )
+        said = f"play before it above {rounded(least, hidden.units[0])}" if least else "no play before it"
+        return f"{said} would show"
 
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
         """Return minus the play of the lagged reference; nothing is left to fit."""

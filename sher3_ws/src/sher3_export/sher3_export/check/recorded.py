@@ -12,7 +12,7 @@ from sher3_chain.joint.description import Axis
 from sher3_chain.joint.record import AxesRun
 from sher3_chain.manipulator.description import Joint, ManipulatorDescription
 from sher3_chain.manipulator.machine import Manipulator
-from sher3_chain.manipulator.mjcf.drives import SLOWER
+from sher3_chain.manipulator.mjcf.drives import steps_in
 from sher3_common.numbers.smoothing import savitzky_golay
 from sher3_diagnosis.channel import Array
 
@@ -114,7 +114,7 @@ def track_of(run: AxesRun, axis: Axis, q: Array, drive: Array | None, late: bool
 
 def holds(joint: Joint, period: float) -> bool:
     """Return whether the servo of a joint goes on within a row of the log, s: no force of its rows says how."""
-    return joint.by_its_law and joint.command_law.loop is not None and period > SLOWER * joint.command_law.loop
+    return joint.by_its_law and steps_in(period, joint.command_law.loop) > 1.0
 
 
 def drive_of(signals: Mapping[str, Array], axis: Axis, late: bool) -> Array | None:

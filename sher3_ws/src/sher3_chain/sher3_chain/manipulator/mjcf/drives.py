@@ -82,6 +82,11 @@ class Step(NamedTuple):
     late: float = 0.0
 
 
+def steps_in(period: float, loop: float | None) -> float:
+    """Return the steps of a loop in a row of a log, s each; 1 where the log is no slower, or there is no loop."""
+    return period / loop if loop is not None and period > SLOWER * loop else 1.0
+
+
 @dataclass(frozen=True)
 class Driven:
     """How the model drives one joint.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from sher3_chain.manipulator.mjcf.drives import SLOWER, Drive, Driven, Step
+from sher3_chain.manipulator.mjcf.drives import Drive, Driven, Step, steps_in
 
 OWN_EFFORT = frozenset(("actuator", "qfrc"))
 """Words in a column's name by which an effort is MuJoCo's own: `actuator_force`, `qfrc_actuator`."""
@@ -31,7 +31,7 @@ def drive_joint(joint: dict[str, Any], own: Driven, simulated: bool, guesses: li
             known = "" if measured else "; record efforts, this joint is not judged"
             guesses.append(f"{name}: its control is not used, because {own.reason}{known}")
     elif drive.servo:
-        within = step.damping or (simulated and measured and own.loop is not None and period > SLOWER * own.loop)
+        within = step.damping or (simulated and measured and steps_in(period, own.loop) > 1.0)
         if within and {"command", "reference"} & signals.keys():
             signals.pop("effort")
             guesses.append(f"{name}: the effort is that of its law, which the simulator follows within a row")

@@ -17,13 +17,13 @@ from sher3_diagnosis.channel import Array
 from sher3_machines.intake.mending.repeats import filled, fresh_readings, goes_smoothly
 
 from sher3_chain.manipulator.description import Joint, ManipulatorDescription
-from sher3_chain.manipulator.mjcf.drives import SLOWER
+from sher3_chain.manipulator.mjcf.drives import steps_in
 from sher3_chain.manipulator.signals import JointSignals
 from sher3_chain.manipulator.view import MotionView
 
 
-class Driven(NamedTuple):
-    """A joint and what its drive moves in the middle posture.
+class Single(NamedTuple):
+    """A joint by itself, and what its drive moves in the middle posture.
 
     Attributes:
         joint: as described.
@@ -54,7 +54,7 @@ def ways_to_act(
     if described.coupling is not None or not rows:
         return {}
     masses, damping, joints = views[0].inertia, _damping(views[0]), described.joints
-    drives = {i: Driven(joints[i], float(masses[i]) + joints[i].step_inertia, float(damping[i])) for i in rows}
+    drives = {i: Single(joints[i], float(masses[i]) + joints[i].step_inertia, float(damping[i])) for i in rows}
     ways = {"hold from row to row, while the drives go on": held, "go on evenly from change to change": between}
     acting = {name: [_acting(view.run, drives, way) for view in views] for name, way in ways.items()}
     return {
@@ -82,24 +82,25 @@ def _damping(view: MotionView) -> Array:
     return np.asarray(stated + np.diag(losses.in_motion(middle, np.eye(len(stated)))))
 
 
-def _acting(run: JointSignals, drives: Mapping[int, Driven], way: Acts) -> JointSignals:
+def _acting(run: JointSignals, drives: Mapping[int, Single], way: Acts) -> JointSignals:
     """Return a run with forces and references as they act; the same run where nothing changes."""
     assert run.effort is not None
-    steps = max(run.period / (drive.joint.command_law.loop or run.period) for drive in drives.values())
-    slow = replace(run, steps=steps if way is held and steps >= SLOWER else 1.0)
+    steps = max(steps_in(run.period, drive.joint.command_law.loop) for drive in drives.values())
+    slow = replace(run, steps=steps if way is held else 1.0)
+    asked = {row: _asked(slow, row, drive) for row, drive in drives.items()}
+    acts = {row: slow.at_rows(way(x, slow.steps)) for row, x in asked.items()}
+    if all(np.array_equal(acts[row], asked[row]) for row in drives):
+        return run
     effort, reference = run.effort.copy(), None if run.reference is None else run.reference.copy()
-    changed, within = False, np.zeros(effort.shape[1])
+    within = np.zeros(effort.shape[1])
     for row, drive in drives.items():
-        asked = _asked(slow, row, drive)
-        acts = slow.at_rows(way(asked, slow.steps))
-        changed |= not np.array_equal(acts, asked)
-        effort[:, row], within[row] = _given(slow, row, drive, acts)
+        effort[:, row], within[row] = _given(slow, row, drive, acts[row])
         if reference is not None and drive.joint.signals.reference is not None:
-            reference[:, row] = acts
-    return replace(slow, effort=effort, reference=reference, within=within) if changed else run
+            reference[:, row] = acts[row]
+    return replace(slow, effort=effort, reference=reference, within=within)
 
 
-def _asked(run: JointSignals, row: int, drive: Driven) -> Array:
+def _asked(run: JointSignals, row: int, drive: Single) -> Array:
     """Return what a drive was asked for, (n,): a force, or a place; that of the recorded force where none was logged.
 
     The force is that at the begin of a row, by the speed which the step before left.
@@ -115,7 +116,7 @@ def _asked(run: JointSignals, row: int, drive: Driven) -> Array:
     return np.asarray(run.motor[:, row] + (force + law.velocity_gain * begin) / law.position_gain)
 
 
-def _given(run: JointSignals, row: int, drive: Driven, acts: Array) -> tuple[Array, float]:
+def _given(run: JointSignals, row: int, drive: Single, acts: Array) -> tuple[Array, float]:
     """Return the force (n,) that a drive gives around each row, and how much of it is put right, rms.
 
     Args:
@@ -167,7 +168,7 @@ class Within(NamedTuple):
     behind: float = 0.0
 
 
-def within_a_row(drive: Driven, run: JointSignals) -> Within:
+def within_a_row(drive: Single, run: JointSignals) -> Within:
     """Return what a servo does within a row, while its control holds.
 
     The joint by itself is a linear system, stepped as implicit methods do. Each row has a control of its own, chosen so
