@@ -53,12 +53,12 @@ def columns_of(machine: ChainDescription) -> list[Column]:
 
 
 def _cut_at_holes(name: str, tables: Tables, machine: ChainDescription) -> tuple[dict[str, Tables], str]:
-    clock, homes = machine.time.column, {table_of(c.column) for c in columns_of(machine)}
-    if clock is None or len(homes) != 1:
+    homes = {table_of(column.column) for column in columns_of(machine)}
+    clocks = {clock_beside(home, tables, machine.time, name) for home in homes}
+    if len(clocks) != 1 or (clock := clocks.pop()) is None:
         return {name: tables}, ""
-    table = homes.pop()
     try:
-        stamps = find(f"{table}/{clock}" if table else clock, tables, name)
+        stamps = find(clock, tables, name)
         return cut(name, tables, stamps, _read(name, tables, machine, tables[stamps]))
     except MachineError:
         return {name: tables}, ""  # the reader names what is missing

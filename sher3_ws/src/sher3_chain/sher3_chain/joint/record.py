@@ -13,7 +13,7 @@ from sher3_machines.intake.columns import MOTION, clock_beside, find, pick, stam
 from sher3_machines.intake.fields import Clock, Column
 from sher3_machines.intake.mending.motion import check_speed, counts_backwards, is_magnitude, signs_of, speed_ratio
 from sher3_machines.intake.mending.parts import LONGEST_HOLE
-from sher3_machines.intake.mending.readings import glitches, known_readings
+from sher3_machines.intake.mending.readings import glitches, known_readings, stays
 from sher3_machines.intake.mending.repeats import (
     LONGEST_HOLD,
     filled,
@@ -49,6 +49,8 @@ READINGS = (*ENCODERS, "effort")
 """Signals that are measured: a value that stays is an old one. A command may well be held, and a reference that goes in
 steps.
 """
+TOLD = ("reference", "command", "effort")
+"""Signals that a log may have a reading of where they change alone."""
 OTHERS = ("reference", "load")
 """Places that follow the position, in its sense or turned."""
 
@@ -137,8 +139,13 @@ def _mended(
         stamps, keep, note = even_stamps(stamps, run)
         x = x[keep]
         notes += [note] if note else []
-    known, note = known_readings(x, stamps is not None, what)
-    notes += [note] if note else []
+    if stamps is not None and of[1] in TOLD and 0 < np.isfinite(x).sum() < MIN_SAMPLES < len(x):
+        notes.append(f"{what}: posted {np.isfinite(x).sum()} times; what was told stays until it is told anew")
+        x = stays(x)
+        known = np.isfinite(x)
+    else:
+        known, note = known_readings(x, stamps is not None, what)
+        notes += [note] if note else []
     stamps, x = _only(stamps, x, known)
     may_be_held = of[1] in READINGS or (of[1] == "reference" and not steps)
     fresh = fresh_readings(x, steps=of[1] not in ENCODERS) if may_be_held else np.ones(len(x), dtype=bool)

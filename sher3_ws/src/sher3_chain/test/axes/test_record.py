@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from sher3_chain.joint.parts import parts_of_record
 from sher3_chain.joint.record import axes_run
 from sher3_chain.joint.units import check_units
 from sher3_machines import MachineError
@@ -144,3 +145,33 @@ def test_an_effort_in_a_field_without_a_sign_is_signed_and_said():
     run = axes_run("run", tables(effort=np.where(current < 0.0, current + 65536.0, current)), described(**axis))
     assert run.signals["slide"]["effort"] == pytest.approx(current)
     assert "has 65535 for -1, as a field of 16 bits has; signed" in run.notes[0]
+
+
+@pytest.mark.parametrize("table", ["", "/states/slide/"])
+def test_columns_on_one_clock_are_cut_at_its_hole_whatever_their_names(table):
+    """A log of one table has strokes in its names: `/joint_states/arm/position`."""
+    t = 0.01 * np.arange(400)
+    t[200:] += 1.0
+    machine = described(
+        **{**SERVO, "signals": {k: {"column": f"{table}{k}", "unit": "m"} for k in ("position", "reference")}}
+    )
+    parts, note = parts_of_record("run", {"t": t, **{f"{table}{k}": t for k in ("position", "reference")}}, machine)
+    assert [len(part["t"]) for part in parts.values()] == [200, 200] and "2 parts" in note
+    other = described(
+        **{**SERVO, "signals": {k: {"column": f"/{k}/x", "unit": "m"} for k in ("position", "reference")}}
+    )
+    assert len(parts_of_record("run", {"t": t, "/position/x": t, "/reference/x": t}, other)[0]) == 2
+
+
+def test_what_is_posted_as_it_changes_stays_until_then():
+    """Four readings in 400 rows: the record begins with the first one, and the last one holds to its end."""
+    posted = np.full(400, np.nan)
+    posted[[50, 100, 220, 300]] = [1.0, -1.0, 2.0, 0.0]
+    force = {"signals": columns("position", "effort"), "command_law": {"kind": "force"}, "mass": 1.0}
+    run = axes_run(
+        "run", {"t": 0.01 * np.arange(400), "position": 1e-4 * np.arange(400.0), "effort": posted}, described(**force)
+    )
+    effort = run.signals["slide"]["effort"]
+    assert len(effort) == 350 and "posted 4 times" in run.notes[0]
+    told = np.repeat([1.0, -1.0, 2.0, 0.0], [50, 120, 80, 100])
+    assert np.mean(np.abs(effort - told) < 1e-6) > 0.98  # but for steps that rounding puts a row later

@@ -1,9 +1,12 @@
 """What lies between two encoders of one axis: play or a spring; under a servo and under known loads."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from sher3_chain.joint.record import AxesRun
 from sher3_diagnosis import diagnose
+from sher3_effects.compliance.transmission_compliance import ComplianceOnAxis
 from slides import columns, machine, servo
 
 PERIOD = 0.002
@@ -126,3 +129,8 @@ def test_a_spring_is_found_from_the_recorded_effort():
     found = between(diagnose(arm, [run]).verdict)
     assert set(found) == {"transmission_compliance"}
     assert found["transmission_compliance"].parameters["stiffness"].value == pytest.approx(2e5, rel=0.06)
+
+
+def test_a_log_shows_no_resonance_beyond_half_its_rate():
+    views = [SimpleNamespace(run=SimpleNamespace(period=period)) for period in (0.002, 0.022)]
+    assert max(ComplianceOnAxis().shown(views[:1])) == 50.0 and max(ComplianceOnAxis().shown(views)) == 20.0

@@ -53,8 +53,13 @@ class TransmissionCompliance(Page):
         Resonance of that mass on the spring (0: far above the bandwidth).
         """
         static: list[Shape] = [{"load_mass": s, "frequency": 0.0, "damping": 0.0} for s in (0.0, 0.1, 0.3, 1.0)]
-        ringing = [{"load_mass": s, "frequency": f, "damping": 0.1} for s in (0.1, 0.3) for f in self.FREQUENCIES]
+        frequencies = self.shown(views)
+        ringing = [{"load_mass": s, "frequency": f, "damping": 0.1} for s in (0.1, 0.3) for f in frequencies]
         return [*static, *ringing]
+
+    def shown(self, views: Sequence[AxisView]) -> list[float]:
+        """Return the frequencies that a record can show, Hz: two samples a swing are the fewest."""
+        return [f for f in self.FREQUENCIES if all(2.0 * f * view.run.period < 1.0 for view in views)]
 
     def refine(self, shape: Shape) -> list[Shape]:
         """Return shapes near this one: other frequencies, dampings and shares of the mass on the spring."""
@@ -70,7 +75,8 @@ class TransmissionCompliance(Page):
         if not shape["frequency"]:
             return Signature({Channel(self.stage, site): column(-run.to_grid(needed(view, site, shape["load_mass"])))})
         force = (weighed(view, site) + mass * held(run.acceleration[:, view.row(site)]))[:, None]
-        bend = oscillator(force, shape["frequency"], min(shape["damping"], MOST_DAMPED), run.period)[:, 0]
+        pace = min(shape["frequency"], 0.5 / run.period)
+        bend = oscillator(force, pace, min(shape["damping"], MOST_DAMPED), run.period)[:, 0]
         back = mass * np.gradient(np.gradient(bend, run.period), run.period)
         motor = Channel("motor_mechanics", site)
         return Signature({Channel(self.stage, site): column(-run.to_grid(bend)), motor: column(-run.to_grid(back))})
@@ -131,7 +137,7 @@ class ComplianceOnAxis(TransmissionCompliance):
             modelled = super().shapes(views, site)
         elif not recorded:
             modelled += [
-                {"ringing": 1.0, "frequency": f, "damping": z} for f in self.FREQUENCIES for z in self.DAMPINGS
+                {"ringing": 1.0, "frequency": f, "damping": z} for f in self.shown(views) for z in self.DAMPINGS
             ]
         return [*modelled, held] if recorded else modelled
 

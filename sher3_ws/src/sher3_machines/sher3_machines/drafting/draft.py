@@ -44,6 +44,8 @@ ROTARY_UNITS = ("rad", "mrad", "deg", "arcmin", "arcsec", "rev", "count")
 ROTARY = (*ROTARY_UNITS, "rad/s", "deg/s", "rev/s", "rpm")
 NEWTONS = ("N", "kN", "mN", "gf", "kgf", "lbf", "N*m", "mN*m")
 """Units of forces and torques that add up."""
+JOINT_STATES, OF_ROS = "joint_states/", "joint states of ROS are in rad and m"
+"""Topic whose messages are in rad and m (REP-103), and what is said of it."""
 SLIDING_AXES = {"x", "y", "z", "cart", "carriage", "slide", "slider"}
 """Names of axes that slide."""
 GEARED = 1.5
@@ -108,8 +110,8 @@ def drafted(path: Path, tables: Tables, rate: float | None, guesses: list[str], 
         time["unit"] = time_unit(clock, tables[clock], guesses)
     period = 1.0 / rate if rate else period_of(tables[str(clock)]) * TIME_UNITS[time["unit"]]
     roles = placed(tables, clock, guesses, held)
-    groups, left = together(roles)
-    groups = measured(paired(once(groups, tables, guesses), tables, guesses), tables, guesses)
+    groups, left = together(paired(roles, tables, guesses))
+    groups = measured(once(groups, tables, guesses), tables, guesses)
     known = {name for name, _ in roles}
     left += [n for n, x in tables.items() if n not in known and n != clock and moves(x)]
     reached: dict[object, float] = {}
@@ -158,6 +160,8 @@ def _unit_of(place: Place, x: Array, reached: float) -> tuple[str, float, str]:
     what = named(place[0])
     if what.signal == "velocity":
         return (what.unit, 1.0, NAMED) if what.unit in VELOCITIES else ("rad/s", 1.0, "it is a velocity")
+    if what.unit is None and JOINT_STATES in place[0]:
+        return ("m" if _slides(place) else "rad"), 1.0, OF_ROS
     counted = what.unit is None and bool((x == np.round(x)).all()) and bool(set(words_of(bare(place[0]))) & COUNTING)
     return position_unit("count" if counted else what.unit, x, _slides(place), reached)
 
@@ -234,7 +238,7 @@ def _axis(
         guesses.append(f"{label}: mass is not known and will be identified from the record; state it where you can")
         out["mass"] = "unknown"
     turns = own == "rev" or own in VELOCITIES  # may well be many
-    named_so = why == NAMED and not turns
+    named_so = why in (NAMED, OF_ROS) and not turns
     return {**out, **(_range(label, x * UNITS[own] * factor, str(out["motion"]), guesses) if named_so else {})}
 
 

@@ -33,6 +33,8 @@ OUTLYING = 2.0
 """Largest value over what nearly all stay below, from which it is a glitch."""
 FEWEST_STEPS = 10
 """Steps from which the smallest one tells an encoder's count."""
+FEWEST_LEVELS = 5
+"""Steps between levels, of a record of few steps, from which the smallest one does."""
 WHOLE, WHOLE_SHARE = 0.05, 0.9
 """How near to a whole multiple of the count a step must be, and the share of steps that must be."""
 EPOCH = (9e8, 4e9)
@@ -70,7 +72,7 @@ def clock_of(tables: Tables, guesses: list[str]) -> str:
         guesses.append(f"time is the column {best!r}, because of its name and because it grows")
         return best
     even = [n for n, x in growing.items() if evenly(x) and not counts_samples(n)]
-    even = [n for n in even if not (np.diff(growing[n]) == 1.0).all()]  # a step of one is a number of the sample
+    even = [n for n in even if not counts_rows(growing[n])]
     if even:
         guesses.append(f"time is the column {even[0]!r}, because it grows evenly")
         return even[0]
@@ -117,6 +119,11 @@ def grows(x: Array) -> bool:
     return len(steps) > 1 and float(np.mean(steps >= 0.0)) > GROWING and bool(np.median(known) > known[0])
 
 
+def counts_rows(x: Array) -> bool:
+    """Return whether a column (n,) grows by one a row, as a number of the sample does."""
+    return bool((np.diff(x) == 1.0).all())
+
+
 def evenly(x: Array) -> bool:
     """Return whether the steps of a column (n,) are even, or are so but for a few pauses and never run back."""
     steps = np.diff(x[np.isfinite(x)])
@@ -158,7 +165,7 @@ def time_unit(clock: str, stamps: Array, guesses: list[str]) -> str:
     for unit, scale in TIME_UNITS.items():
         if USUAL_RATES[0] <= 1.0 / (period * scale) <= USUAL_RATES[1]:
             count = "; it grows by one a row, as a number of the sample does: state the rate then, --rate HZ"
-            more = count if (np.diff(stamps) == 1.0).all() else ""
+            more = count if counts_rows(stamps) else ""
             guesses.append(f"time in {unit}: {1.0 / (period * scale):.4g} samples per second{more}")
             return unit
     guesses.append(f"time in s, though a period of {period:.4g} s is unusual")
@@ -222,10 +229,15 @@ def scatter(x: Array) -> float:
 
 
 def count_of(x: Array) -> float | None:
-    """Return the count of an encoder (n,): the smallest step of its signal, if most steps are whole multiples of it."""
+    """Return the count of an encoder (n,): the smallest step of its signal, if most steps are whole multiples of it.
+
+    A disc of a few lines takes few steps; the levels that it stood at tell its count then.
+    """
     steps = np.abs(np.diff(x))
     steps = steps[steps > 1e-12 * max(1.0, reach(x))]
     if len(steps) < FEWEST_STEPS:
+        steps = np.diff(np.unique(x)) if len(x) >= FEWEST_STEPS else steps
+    if len(steps) < FEWEST_LEVELS:
         return None
     least = float(np.quantile(steps, 0.01))
     multiples = steps / least

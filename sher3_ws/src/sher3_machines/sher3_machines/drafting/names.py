@@ -22,8 +22,8 @@ def vocabulary(text: str) -> frozenset[str]:
 
 POSITION = vocabulary(
     "position positions pos posn q qpos theta phi psi angle angles ang encoder enc lage weg winkel qm x z dist "
-    "displacement displ stroke gap hub verschiebung schrittzähler steps schritte thetam posición posicion posição "
-    "posicao posizione ángulo angulo saída saida salida"
+    "distance displacement displ stroke gap hub verschiebung schrittzähler steps schritte thetam posición posicion "
+    "posição posicao posizione ángulo angulo saída saida salida"
 )
 COUNTING = vocabulary("encoder enc")
 """Words for a place that, where it is whole all along, is in counts."""
@@ -138,7 +138,7 @@ def named(column: str) -> Named:
     known, unit = bare_and_unit(last)
     words = words_of(known)
     if tables and words and set(words) <= READING:  # a channel of a control system: its table has the name
-        words = words_of(tables[-1])
+        words = words_of(tables.pop())
     if tables and unit is None and not set(words) & TELLING:  # a file for each signal: its columns are the joints
         parted = named(tables[-1])
         axis = "_".join(w for w in words if w not in PLAIN and w != NAMELESS)

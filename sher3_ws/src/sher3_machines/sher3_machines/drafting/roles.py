@@ -39,6 +39,8 @@ DEMANDED = {"command", "commanded", "cmd", "action"}
 """Words for what a drive is told, whether a place or a force."""
 ASKED_FOR = ("reference", ASKED_SPEED)
 """Signals that may stay as they are all along, and then say that a place is held."""
+TOLD = (*ASKED_FOR, "command", "effort")
+"""Signals that a log may have a reading of where they change alone."""
 LAST_NUMBER = re.compile(r"(?P<stem>.*?)(?P<number>\d+)")
 """Name of an axis that ends in a number."""
 ROUNDED = 1e-5
@@ -119,7 +121,8 @@ def _living(
     found = {p: (signal, values_of(p, tables)) for p, (signal, _) in placed.items()}
     driven = any(signal in ("command", "effort") and moves(x) for signal, x in found.values())
     stays = (*(() if driven else ASKED_FOR), *(("position",) if held else ()))
-    dead = [p for p, (signal, x) in found.items() if not (moves(x) or (signal in stays and len(x)))]
+    told = {p for p, (signal, x) in found.items() if signal in TOLD and len(np.unique(x)) > 1}  # posted as it changes
+    dead = [p for p, (signal, x) in found.items() if not (moves(x) or p in told or (signal in stays and len(x)))]
     alive = {p: what for p, what in placed.items() if p not in dead}
     if not any(signal in ("position", "load", "velocity") for signal, _ in alive.values()):
         return dict(placed)
@@ -241,22 +244,27 @@ def once(groups: dict[str, dict[str, Place]], tables: Tables, guesses: list[str]
     return out
 
 
-def paired(groups: dict[str, dict[str, Place]], tables: Tables, guesses: list[str]) -> dict[str, dict[str, Place]]:
-    """Return two axes that move together, of which nothing but places was recorded, as one axis with two encoders.
+def paired(
+    placed: Mapping[Place, tuple[str, str]], tables: Tables, guesses: list[str]
+) -> Mapping[Place, tuple[str, str]]:
+    """Return the signals with two places that move together as those of one axis, an encoder each.
 
+    They are the only ones, and nothing else is named after the axis of either, so that what drives is that axis'.
     Joints, wheels and sides are parts of their own, however alike they move.
     """
-    if len(groups) != 2 or any(set(signals) != {"position"} for signals in groups.values()):
-        return groups
-    (axis, first), (_, second) = groups.items()
-    if any(set(words_of(bare(signals["position"][0]))) & MEMBERS for signals in groups.values()):
-        return groups
-    x, y = (values_of(signals["position"], tables) for signals in (first, second))
+    places = [p for p, (signal, _) in placed.items() if signal == "position"]
+    axes = [placed[p][1] for p in places]
+    others = {axis for p, (_, axis) in placed.items() if p not in places}
+    if len(places) != 2 or axes[0] == axes[1] or others & set(axes):
+        return placed
+    if any(set(words_of(bare(name))) & MEMBERS for name, _ in places):
+        return placed
+    x, y = (values_of(p, tables) for p in places)
     if len(x) != len(y) or not (moves(x) and moves(y)) or abs(np.corrcoef(x, y)[0, 1]) < TOGETHER:
-        return groups
-    names = first["position"][0], second["position"][0]
-    guesses.append(f"{names[0]!r} and {names[1]!r} are two encoders of one axis, because they move together")
-    return {axis: {**first, "load": second["position"]}}
+        return placed
+    first, second = (name for name, _ in places)
+    guesses.append(f"{first!r} and {second!r} are two encoders of one axis, because they move together")
+    return {**placed, places[1]: ("load", axes[0])}
 
 
 def _same(place: Place, other: Place, tables: Tables) -> bool:

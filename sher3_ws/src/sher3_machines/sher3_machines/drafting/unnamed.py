@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from sher3_diagnosis.channel import Array
 
-from sher3_machines.drafting.guesses import evenly, grows, swings_to_rest
+from sher3_machines.drafting.guesses import counts_rows, evenly, grows, swings_to_rest
 from sher3_machines.drafting.names import bare_and_unit
 from sher3_machines.errors import MachineError
 from sher3_machines.intake.mending.motion import AGREES, FOLLOWS, speed_of, speed_ratio
@@ -176,7 +176,8 @@ def _timed(tables: Tables, rate: float | None) -> tuple[Place | None, Array, dic
     """
     unnamed = [place for place in places_of(tables) if place[1] is not None or WITHOUT.fullmatch(place[0])]
     columns = {place: values_at(place, tables) for place in unnamed}
-    clock = next((p for p, x in columns.items() if grows(x) and evenly(x)), None) if rate is None else None
+    clocks = [p for p, x in columns.items() if grows(x) and evenly(x)] if rate is None else []
+    clock = next((p for p in clocks if not counts_rows(columns[p])), clocks[0] if clocks else None)
     if not columns or (clock is None and rate is None):
         return None, np.zeros(0), {}
     t = columns.pop(clock) if clock else np.arange(len(next(iter(columns.values())))) / float(rate or 1.0)

@@ -34,6 +34,8 @@ WIDE = 10
 SECONDS = re.compile(r"(?P<clock>(.*[/._])?)(secs?|seconds)")
 NANOSECONDS = re.compile(r"(?P<clock>(.*[/._])?)(nanos|nsecs?|nanosecs?|nanoseconds)")
 """The two columns of a clock, as ROS and EPICS write them."""
+DRAWN = re.compile(r"(?P<channel>.+)_(?P<side>[xy])")
+"""A column of a curve, as plotters save what they drew: stamps as `NAME_x`, readings as `NAME_y`."""
 
 
 def read_bag(path: Path) -> Tables:
@@ -178,6 +180,29 @@ def with_whole_clocks(tables: Tables) -> Tables:
     return found
 
 
+def of_curves(tables: Tables) -> Tables:
+    """Return columns that were saved as curves, `NAME_x` of stamps that grow and `NAME_y`, as channels with stamps."""
+    curves = [DRAWN.fullmatch(name) for name in tables]
+    names = {m["channel"] for m in curves if m}
+    pairs = {name: (tables.get(f"{name}_x"), tables.get(f"{name}_y")) for name in names}
+    if not tables or len(tables) != 2 * len(names) or not all(map(_is_curve, *zip(*pairs.values(), strict=True))):
+        return tables
+    found: Tables = {}
+    for name in dict.fromkeys(m["channel"] for m in curves if m):
+        x, y = tables[f"{name}_x"], tables[f"{name}_y"]
+        known = np.isfinite(x) & np.isfinite(y)
+        found |= {f"{name}/stamp": x[known], f"{name}/value": y[known]}
+    return found
+
+
+def _is_curve(x: Array | None, y: Array | None) -> bool:
+    """Return whether columns (n,) are there and the first one grows all along."""
+    if x is None or y is None or x.ndim != 1 or y.shape != x.shape:
+        return False
+    steps = np.diff(x[np.isfinite(x)])
+    return len(steps) > 0 and bool((steps >= 0.0).all() and (steps > 0.0).any())
+
+
 def is_rosbag2(path: Path) -> bool:
     """Whether a folder is a bag of ROS 2."""
     return path.is_dir() and (path / "metadata.yaml").is_file()
@@ -185,7 +210,7 @@ def is_rosbag2(path: Path) -> bool:
 
 def _read(path: Path, reader: Callable[[Path], Tables]) -> Tables:
     try:
-        return with_whole_clocks(upright(reader(path)))
+        return of_curves(with_whole_clocks(upright(reader(path))))
     except FileError as error:
         raise MachineError(
             f"{path}: {error.reason}", value=error.value, limit=error.limit, remedy=error.remedy or "check the file"

@@ -317,6 +317,43 @@ def test_two_places_that_move_together_are_encoders_of_one_axis(tmp_path, header
     assert len(parse_yaml(written(tmp_path, "t,left_enc,right_enc", TIME, q, read).text)["axes"]) == 2
 
 
+def test_what_drives_two_encoders_is_that_of_their_axis(tmp_path):
+    """A command and an effort that name neither encoder belong to the one axis; those of an encoder's part them."""
+    q, header = np.round(1e4 * np.sin(TIME)), "Time,Commanded Pos,Encoder 1 Pos,Encoder 2 Pos,Control Effort"
+    text = written(tmp_path, header, TIME, np.sign(np.sin(TIME)), q, np.round(q / 4.0), np.cos(3.0 * TIME)).text
+    (axis,) = parse_yaml(text)["axes"]
+    assert set(axis["signals"]) == {"position", "load", "reference", "effort"} and axis["mass"] == "unknown"
+    parts = written(tmp_path, "t,enc1,enc2,u1,u2", TIME, q, np.round(q / 4.0), np.cos(TIME), np.cos(2.0 * TIME)).text
+    assert len(parse_yaml(parts)["axes"]) == 2
+
+
+def test_a_command_that_is_posted_as_it_changes_drives_its_axis(tmp_path):
+    """Five readings in 2000 rows of a log that merges topics; one level that is posted again drives nothing."""
+    posted = np.full(len(TIME), np.nan)
+    posted[200::400] = [0.1, -0.2, 0.3, -0.3, 0.0]
+    (axis,) = parse_yaml(written(tmp_path, "t,angle,effort", TIME, np.sin(TIME), posted).text)["axes"]
+    assert axis["signals"]["effort"]["column"] == "effort" and axis["command_law"]["kind"] == "force"
+    posted[200::400] = 2.0
+    (axis,) = parse_yaml(written(tmp_path, "t,angle,effort", TIME, np.sin(TIME), posted).text)["axes"]
+    assert "effort" not in axis["signals"]
+
+
+def test_joint_states_of_ros_are_in_rad_however_far_a_shaft_has_turned(tmp_path):
+    columns = (TIME, 327.5 + np.sin(TIME), 0.3 * np.cos(TIME))
+    axes = parse_yaml(written(tmp_path, "t,/joint_states/arm/position,/joint_states/pole/position", *columns).text)[
+        "axes"
+    ]
+    assert [axis["signals"]["position"]["unit"] for axis in axes] == ["rad", "rad"] and axes[0]["range"] == [-329, 329]
+
+
+def test_levels_tell_the_count_of_a_disc_of_few_lines(tmp_path):
+    """Ten lines a step of 180 degrees: nine steps in all, of which half are the smallest one."""
+    q = 20.0 * np.round(np.clip(9.0 * (TIME - TIME[0] - 1.0), 0.0, 9.0))
+    asked = np.where(TIME - TIME[0] < 0.9, 0.0, 180.0)
+    (axis,) = parse_yaml(written(tmp_path, "t,target,angle", TIME, asked, q).text)["axes"]
+    assert axis["signals"]["position"]["step"] == 20.0
+
+
 def test_a_refusal_lists_columns_in_the_order_in_which_names_are_given(tmp_path):
     with pytest.raises(MachineError, match=r"no column looks like a position; value t, zeta, beta"):
         written(tmp_path, "t,zeta,beta", TIME, TIME**2, np.cos(TIME))

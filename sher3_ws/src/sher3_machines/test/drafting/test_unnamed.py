@@ -62,6 +62,14 @@ def test_a_place_is_what_follows_another_column_late_and_as_far(tmp_path, seed):
         draft_of(tmp_path / "b.csv")
 
 
+def test_a_number_of_the_sample_is_no_time_beside_one(tmp_path):
+    found = followed(0)
+    np.savetxt(tmp_path / "a.csv", np.column_stack([np.arange(len(found)), found]), delimiter=",")
+    described = parse_yaml(draft_of(tmp_path / "a.csv").text)
+    assert described["time"]["column"] == "c1"
+    assert described["axes"][0]["signals"]["position"]["column"] == "c3"
+
+
 @pytest.mark.parametrize("seed", range(3))
 def test_a_column_alone_is_a_place_where_it_swings_to_rest(tmp_path, seed):
     draw = np.random.default_rng(seed)

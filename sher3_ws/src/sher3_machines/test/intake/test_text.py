@@ -147,3 +147,24 @@ def test_a_matrix_as_matlab_writes_it_is_a_table(tmp_path, sign):
     assert list(found) == ["Sample", "Time", "Encoder 1 Pos", "Control Effort"]
     assert found["Encoder 1 Pos"].tolist() == [0.0, -1.0, -2.0, -3.0, -4.0, -5.0]
     assert tables(tmp_path, "a = [0 1.5; 1 2.5; 2 3.5];")["c1"].tolist() == [1.5, 2.5, 3.5]
+
+
+def test_a_script_with_a_matrix_under_a_comment_is_a_table(tmp_path):
+    """Wide blanks part titles of several words; what follows the matrix is the script's."""
+    rows = ";\n".join(f"{i}   {0.009 * i:.3f}   {i * i}   {-i}" for i in range(40))
+    text = f"% Sample   Time     Encoder 1 Pos   Control Effort\n\ndata =[ {rows}];\n\nt = data(:,2); %read\nplot(t)\n"
+    found = tables(tmp_path, text)
+    assert list(found) == ["Sample", "Time", "Encoder 1 Pos", "Control Effort"]
+    assert found["Time"][-1] == 0.351 and all(len(x) == 40 for x in found.values())
+    (tmp_path / "log.m").write_text(text, encoding="utf-8")
+    assert list(read_tables(tmp_path / "log.m")) == list(found)
+
+
+def test_curves_that_a_plotter_saved_are_channels_with_stamps(tmp_path):
+    """`NAME_x` grows and `NAME_y` is what was read; channels end one by one."""
+    rows = [f"{0.01 * i:g},{i},{0.01 * i + 0.003:g},{-i}," for i in range(30)] + ["0.3,30, , ,"]
+    found = tables(tmp_path, "\n".join(["/js/q[3]_x,/js/q[3]_y,/js/effort[3]_x,/js/effort[3]_y", *rows]) + "\n")
+    assert list(found) == [f"/js/{n}[3]/{what}" for n in ("q", "effort") for what in ("stamp", "value")]
+    assert len(found["/js/q[3]/value"]) == 31 and len(found["/js/effort[3]/stamp"]) == 30
+    left = tables(tmp_path, "t,ball_x,ball_y\n" + "\n".join(f"{i},{i},{-i}" for i in range(30)) + "\n")
+    assert list(left) == ["t", "ball_x", "ball_y"]

@@ -51,6 +51,12 @@ def known_readings(x: Array, stamped: bool, what: str) -> tuple[Mask, str]:
     return known, f"{what}: {bad} of {len(x)} readings are missing or not finite; interpolated"
 
 
+def stays(x: Array) -> Array:
+    """Return a signal (n,) in which each reading stays until the next one; before the first one it is nan."""
+    last = np.maximum.accumulate(np.where(np.isfinite(x), np.arange(len(x)), -1))
+    return np.where(last >= 0, x[last], np.nan)
+
+
 def glitches(x: Array) -> NDArray[np.int64]:
     """Return the samples of a position (n,) that are far off their neighbours on both sides; empty for a signal."""
     if len(x) < 4 * NEIGHBOURS:

@@ -57,7 +57,8 @@ def read_table(path: Path) -> dict[str, Array]:
     comma = mark in (";", "\t", None) and any(DECIMAL_COMMA.fullmatch(c.strip()) for r in rows[:FIRST] for c in r)
     if is_long(rows):
         return tables_of_readings(rows)
-    return columns_of(rows, comma, names_of([_names(line, mark) for line in lines[:preamble]]))
+    width = len(rows[usual_row(len(rows))])
+    return columns_of(rows, comma, names_of([_names(line, mark, width) for line in lines[:preamble]]))
 
 
 def decoded(path: Path) -> str:
@@ -84,11 +85,16 @@ def separator(line: str) -> str | None:
 
 
 def _unbracketed(lines: list[str]) -> list[str]:
-    """Return the lines of a matrix as MATLAB writes it, `[1 2; 3 4]`, a row a line and without its signs."""
-    opened = next((i for i, line in enumerate(lines) if "[" in line), None)
-    if opened is None or "]" in "".join(lines[opened:-1]) or not lines[-1].rstrip("; ").endswith("]"):
+    """Return the lines of a matrix as MATLAB writes it, `[1 2; 3 4]`, a row a line, without its signs and what follows.
+
+    A script goes on behind its matrix; a list in a cell ends in the line in which it begins.
+    """
+    opened = next((i for i, line in enumerate(lines) if "[" in line), len(lines))
+    closed = next((i for i, line in enumerate(lines[opened:], opened) if "]" in line), opened)
+    if closed == opened and not (opened == len(lines) - 1 and lines[opened].rstrip("; ").endswith("]")):
         return lines
-    inside = [lines[opened].partition("[")[2], *lines[opened + 1 :]]
+    inside = [lines[opened].partition("[")[2], *lines[opened + 1 : closed], lines[closed].partition("]")[0]]
+    inside = inside[:1] if closed == opened else inside
     rows = [row.strip("] \t") for line in inside for row in line.split(";")]
     return [*lines[:opened], *(row for row in rows if row)]
 
@@ -96,9 +102,13 @@ def _unbracketed(lines: list[str]) -> list[str]:
 def _parted_by_blanks(lines: list[str]) -> list[list[str]]:
     """Return the cells of lines that blanks part; wide blanks, where titles of several words stand above columns."""
     rows = [BLANKS.findall(line) for line in lines]
-    width = len(rows[usual_row(len(rows))])
-    wide = WIDE_BLANKS.split(lines[0].strip())
-    return [wide, *rows[1:]] if len(rows[0]) > width == len(wide) else rows
+    return [_titles(lines[0], len(rows[usual_row(len(rows))])), *rows[1:]]
+
+
+def _titles(line: str, width: int) -> list[str]:
+    """Return the cells of a line that blanks part: as many as a table is wide, where wide blanks part so many."""
+    cells, wide = BLANKS.findall(line), WIDE_BLANKS.split(line.strip())
+    return wide if len(cells) > width == len(wide) else cells
 
 
 def _ended(lines: list[str], mark: str | None) -> list[str]:
@@ -126,7 +136,7 @@ def _quoted(line: str) -> str:
     return line if "[" not in line or '"' in line else LISTED.sub(lambda match: f'"{match[0].strip()}"', line)
 
 
-def _names(line: str, mark: str | None) -> list[str]:
-    """Names in the last line of a preamble."""
+def _names(line: str, mark: str | None, width: int) -> list[str]:
+    """Names in a line of a preamble, over a table of so many columns."""
     bare = line.lstrip().lstrip("".join(COMMENTS)).strip()
-    return [x.strip() for x in (bare.split(mark) if mark else bare.split())]
+    return [x.strip() for x in bare.split(mark)] if mark else _titles(bare, width)
