@@ -136,6 +136,35 @@ class ServoSag(GravityOnAxis):
         "encoder_offset": "a sag grows with the load, a zero does not",
     }
     units = {"force": "m", "relative": "m/N", "arm": "m", "hanging": "m"}
+    STILL, LONG, RESTING, TOLD = 0.05, 1 / 40, 0.6, 0.2
+    """Share of the top speed below which a servo rests, and of a record for how long; the share of it that it rests at
+    most without the rests having to tell its sag; the least singular value over the largest one from which they do,
+    that of two rests 0.3 rad apart.
+    """
+
+    def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
+        """Return the shapes of an axis that the rests of the servo tell."""
+        return [shape for shape in super().shapes(views, site) if self.told(views, site, shape)]
+
+    def bends(self, views: Sequence[AxisView], site: str, shape: Shape) -> list[Shape]:
+        """Return a weight at an arm and a constant force, where rests tell them."""
+        return [bent for bent in super().bends(views, site, shape) if self.told(views, site, bent)]
+
+    def told(self, views: Sequence[AxisView], site: str, shape: Shape) -> bool:
+        """Return whether the places at which a servo rests tell its sag, where it rests most of the time.
+
+        A weight at an arm does nothing at 0 and at 180 degrees: the way between them is no witness of it.
+        """
+        speeds = [np.abs(view.run.velocity[:, view.row(site)]) for view in views]
+        spans = [np.ones(int(self.LONG * len(speed)) + 1) for speed in speeds]
+        moving = [np.convolve(x >= self.STILL * x.max(), span, "same") for x, span in zip(speeds, spans, strict=True)]
+        still = np.concatenate(moving) < 0.5
+        q = np.concatenate([view.run.motor[:, view.row(site)] for view in views])[still]
+        if shape["constant"] < 2.0 or len(q) < self.RESTING * len(still):
+            return True
+        arm = np.column_stack([np.sin(q), np.cos(q), *([np.ones(len(q))] if shape["constant"] == 3.0 else [])])
+        sizes = np.linalg.svd(arm, compute_uv=False)
+        return bool(sizes[-1] > self.TOLD * sizes[0])
 
 
 @dataclass(frozen=True)
