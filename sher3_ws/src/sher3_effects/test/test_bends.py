@@ -7,7 +7,7 @@ import pytest
 from sher3_effects.compliance.stiffening import softness
 from sher3_effects.compliance.tool_bending import ToolBending
 from sher3_effects.friction.stribeck_friction import StribeckFriction, StribeckOnAxis
-from sher3_effects.inertia.gravity_load import ServoSag
+from sher3_effects.inertia.gravity_load import GravityOnAxis
 from sher3_effects.limit.force_saturation import bent
 from sher3_effects.lost_motion.joint_clearance import JointClearance
 from sher3_effects.operators import frozen_integral, play, released_play
@@ -187,5 +187,7 @@ def test_a_weight_and_a_force_that_change_places_become_one_of_them():
     view = SimpleNamespace(
         path=SimpleNamespace(gravity=np.zeros((3, 1))), axis=lambda site: SimpleNamespace(weighed=True, travel=0.7)
     )
-    fewer = {n: [s["constant"] for s in ServoSag().plainer([view], "lift", {"constant": n})] for n in (1.0, 2.0, 3.0)}
+    fewer = {
+        n: [s["constant"] for s in GravityOnAxis().plainer([view], "lift", {"constant": n})] for n in (1.0, 2.0, 3.0)
+    }
     assert fewer == {1.0: [], 2.0: [1.0], 3.0: [1.0, 2.0]}

@@ -155,12 +155,14 @@ class ServoSag(GravityOnAxis):
 
         A weight at an arm does nothing at 0 and at 180 degrees: the way between them is no witness of it.
         """
+        if shape["constant"] < 2.0:
+            return True
         speeds = [np.abs(view.run.velocity[:, view.row(site)]) for view in views]
         spans = [np.ones(int(self.LONG * len(speed)) + 1) for speed in speeds]
         moving = [np.convolve(x >= self.STILL * x.max(), span, "same") for x, span in zip(speeds, spans, strict=True)]
         still = np.concatenate(moving) < 0.5
         q = np.concatenate([view.run.motor[:, view.row(site)] for view in views])[still]
-        if shape["constant"] < 2.0 or len(q) < self.RESTING * len(still):
+        if len(q) < self.RESTING * len(still):
             return True
         arm = np.column_stack([np.sin(q), np.cos(q), *([np.ones(len(q))] if shape["constant"] == 3.0 else [])])
         sizes = np.linalg.svd(arm, compute_uv=False)
