@@ -141,7 +141,7 @@ WIDTHS = ("width", "displacement", "reach", "amplitude")
 
 
 def impossible(drawn: Drawn, verdict: Verdict) -> list[str]:
-    """Return what no verdict may say: an interval that holds zero or misses its estimate, a width beyond the travel."""
+    """Return what no verdict may say: a number that may be zero, or misses its interval, a width beyond the travel."""
     travel = float(np.ptp(drawn.run.signals["axis"]["position"]))
     told = ((c.effect, n, p) for c in verdict.causes for n, p in c.parameters.items() if n in WIDTHS)
     wide = [f"{e} {n} {p.value:.3g} of a travel of {travel:.3g}" for e, n, p in told if p.value > travel]

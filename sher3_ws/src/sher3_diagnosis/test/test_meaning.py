@@ -45,6 +45,12 @@ def cause(closure=(0.9, 0.8), **parameters):
     return Cause(effect="x", family="y", stage="z", actuator="axis", parameters=told, closure=shrinks)
 
 
+IDLE = cause(closure=(0.1, -0.1), size=(1.0, 2.0))
+"""A cause that may be of no use to what was left out."""
+PARTED = [(-1.0) ** i * np.sign(run.velocity) for i, run in enumerate(case(4.0))]
+"""A quantity that goes with the direction in every second run, against it in the others."""
+
+
 def test_sizes_are_what_all_coefficients_scale():
     term, found = Term(Law("law", "spring", "one")), np.array([2.0, 4.0])
     assert sizes_of(term, found) == ["size", "inverse"]
@@ -73,9 +79,12 @@ def test_a_cause_whose_sizes_hold_zero_has_none():
     assert not of_no_size(term, found, cause(size=(1.0, 3.0), place=(-1.0, 2.0)))
 
 
-def test_what_tells_a_law_from_a_simpler_one_must_not_hold_zero():
-    effect = Law("law", "spring", "one", extends_by=("place",))
-    assert of_no_size(Term(effect), np.array([2.0, 4.0]), cause(size=(1.0, 3.0), place=(-1.0, 2.0)))
+@pytest.mark.parametrize("least", [-1.0, 1.0])
+def test_what_tells_a_law_from_a_simpler_one_must_not_hold_zero(least):
+    evidence = evidence_of(case(6.0))
+    effect = Column("rich", "friction", "direction", extends_by=("place",))
+    found = fit(evidence.data, [make_term(evidence.data, effect, "axis", {})])
+    assert says_nothing(evidence, found, 0, cause(size=(1.0, 3.0), place=(least, 2.0))) is (least < 0.0)
 
 
 @pytest.mark.parametrize(
@@ -113,9 +122,9 @@ def test_a_law_that_is_no_more_than_a_simpler_one_becomes_that_one_and_others_go
     found = with_rivals(candidates, fit(evidence.data, [make_term(evidence.data, rich, "axis", {})]))
     kept = without_empty(candidates, found, [cause(size=(1.0, 2.0))])
     assert kept is found
-    plain = without_empty(candidates, found, [cause(size=(-1.0, 2.0))])
+    plain = without_empty(candidates, found, [IDLE])
     assert [t.effect.id for t in plain.fit.terms] == ["direction"]
-    none = without_empty(candidates, plain, [cause(size=(-1.0, 2.0))])
+    none = without_empty(candidates, plain, [IDLE])
     assert none.fit.terms == () and none.rivals == ()
 
 
@@ -131,8 +140,20 @@ def test_what_has_no_size_may_stay_in_the_fit_without_a_name():
     assert [kept.fit.terms[i].effect for i in kept.causes] == [DIRECTION]
     assert kept.nuisance == 1 and kept.fit.total == pytest.approx(found.fit.total)
     assert kept.explained == (found.explained[1], found.explained[0])
-    gone = without_empty(candidates, found, told)
+    gone = without_empty(candidates, found, told)  # it explains less than laws are off by
     assert [t.effect for t in gone.fit.terms] == [DIRECTION]
+
+
+def test_what_explains_more_than_laws_are_off_by_stays_whatever_its_size():
+    """How large it is, is open; that it is there is not."""
+    runs = [replace(run, values=run.values + 15.0 * x, warmth=x) for run, x in zip(case(4.0), PARTED, strict=True)]
+    evidence = evidence_of(runs)
+    second = Column("second", "inertia", "warmth")
+    candidates = Candidates(evidence, [DIRECTION, second])
+    terms = [make_term(evidence.data, effect, "axis", {}) for effect in (DIRECTION, second)]
+    found = with_rivals(candidates, fit(evidence.data, terms))
+    told = [cause(size=(1.0, 2.0)), cause(size=(-1.0, 2.0))]
+    assert without_empty(candidates, found, told) is found
 
 
 def test_a_gap_that_only_nameless_terms_explain_is_still_a_gap():
@@ -146,10 +167,10 @@ def test_a_gap_that_only_nameless_terms_explain_is_still_a_gap():
 
 
 @pytest.mark.parametrize(
-    ("interval", "means"), [((0.057, 1.6), OPEN), ((-1.6, -0.057), OPEN), ((0.4, 3.6), None), ((-0.1, 3.0), None)]
+    ("interval", "means"), [((0.057, 1.6), OPEN), ((-1.6, -0.057), OPEN), ((0.4, 3.6), None), ((-0.1, 3.0), OPEN)]
 )
 def test_a_size_of_no_known_order_is_told_without_its_number_and_with_what_would_tell_it(interval, means):
-    """One that may be zero is another matter: it says that there is nothing."""
+    """One that may be zero is so, too: that the cause is there is told by what it closes."""
     evidence = evidence_of(case(6.0))
     candidates = Candidates(evidence, [DIRECTION])
     found = with_rivals(candidates, fit(evidence.data, [make_term(evidence.data, DIRECTION, "axis", {})]))
@@ -160,25 +181,10 @@ def test_a_size_of_no_known_order_is_told_without_its_number_and_with_what_would
     assert len(notes) == (means is not None) and all(n.endswith("what would tell it: steps show it") for n in notes)
 
 
-@pytest.mark.parametrize("size", [15.0, 40.0])
-def test_what_others_need_for_their_size_stays_in_the_fit_without_a_name(size):
-    """A quantity that goes with the direction in every second run, against it in the others: nothing is told alone."""
-    beside = [(-1.0) ** i * np.sign(run.velocity) for i, run in enumerate(case(4.0))]
-    runs = [replace(run, values=run.values + size * x, warmth=x) for run, x in zip(case(4.0), beside, strict=True)]
-    evidence = evidence_of(runs)
-    second = Column("second", "inertia", "warmth")
-    terms = [make_term(evidence.data, effect, "axis", {}) for effect in (DIRECTION, second)]
-    found = with_rivals(Candidates(evidence, [DIRECTION, second]), fit(evidence.data, terms))
-    told = [cause(size=(1.0, 2.0)), cause(size=(-1.0, 2.0))]
-    kept = without_empty(Candidates(evidence, [DIRECTION, second]), found, told)
-    assert [kept.fit.terms[i].effect for i in kept.causes] == [DIRECTION] and kept.nuisance == 1
-
-
-def test_a_law_of_no_size_gives_its_place_to_a_rival_that_explains_as_much():
-    """A spring of no stiffness is a constant force, which it does not contain where a weight may hang at an arm."""
+def test_a_law_that_closes_nothing_gives_its_place_to_a_rival_that_explains_as_much():
     other = Column("other", "spring", "direction")
     evidence = evidence_of(case(6.0))
     candidates = Candidates(evidence, [DIRECTION, other])
     found = with_rivals(candidates, fit(evidence.data, [make_term(evidence.data, other, "axis", {})]))
-    kept = without_empty(candidates, found, [cause(size=(-1.0, 2.0))])
+    kept = without_empty(candidates, found, [IDLE])
     assert [t.effect.id for t in kept.fit.terms] == ["direction"]

@@ -46,13 +46,13 @@ def test_an_unknown_mass_and_a_noisy_encoder():
 
 
 def test_below_its_limit_no_play_is_named():
-    """The notes say which play would show: half of that is not named, twice as much is."""
+    """The notes say which play would show: a fifth of that is not named, twice as much is."""
     verdict = verdict_of(behind_gap(0.0))
     size, unit = said(verdict).split("play above ")[1].split()[:2]
     limit = 1e-6 * float(size)
     assert unit == "µm"
     assert 1e-5 < limit < 1e-4
-    assert "backlash" not in effects(verdict_of(behind_gap(0.5 * limit)))
+    assert "backlash" not in effects(verdict_of(behind_gap(0.2 * limit)))
     assert "backlash" in effects(verdict_of(behind_gap(2.0 * limit)))
 
 

@@ -1,4 +1,4 @@
-"""Which causes say nothing: of no size, impossible, or of no use to parts of the data that they were not fitted to.
+"""Which causes say nothing: as simple as another, impossible, or of no use to data that they were not fitted to.
 
 This is asked of every cause of a machine whose policy says so (`Policy.swept`), in one place, whatever found it. A law
 that contains a simpler one and is no more than that is replaced by it; anything else that says nothing is left out,
@@ -8,17 +8,17 @@ even if its gap is open then: a gap without a name is an answer, a wrong name is
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from sher3_diagnosis.attribute.candidates import Candidates
-from sher3_diagnosis.attribute.rivals import Attribution, without_term
+from sher3_diagnosis.attribute.rivals import Attribution
+from sher3_diagnosis.attribute.together import law_error
 from sher3_diagnosis.channel import Array
 from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.fit.fitting import Fit, Term
-from sher3_diagnosis.quantify.parameters import parameters
 from sher3_diagnosis.verdict import Cause, Parameter
 from sher3_diagnosis.words import place, range_text, words
 
@@ -41,88 +41,74 @@ def without_empty(
 ) -> Attribution:
     """Return the attribution without the causes that say nothing, or the same where each says something.
 
-    Of one place the cause that explains least goes first: what it leaves may give the others their size.
+    Of one place the cause that explains least goes first: what it leaves may give the others their size. One whose
+    size may be zero stays where it explains more than laws are off by: that it is there is told by what it closes
+    wherever it was not fitted, how large it is by its interval.
 
     Args:
         candidates: the evidence and the effects.
         attribution: of the evidence.
         causes: of the attribution, with their sizes.
-        carried: whether one that only has no size stays in the fit without a name; where it is not, one stays that
-            others of its place need for theirs.
+        carried: whether one whose size may be zero stays in the fit without a name.
     """
-    evidence, empty = candidates.evidence, dict[str, int]()
-    for i, cause in zip(attribution.causes, causes, strict=True):
-        site, worth = cause.actuator, attribution.explained[i]
-        if says_nothing(evidence, attribution.fit, i, cause):
-            least = empty.setdefault(site, i)
-            empty[site] = i if worth < attribution.explained[least] else least
+    evidence, found, empty = candidates.evidence, attribution.fit, dict[str, int]()
+    least = math.inf if carried else law_error(evidence, found, plain=False)
+    sized = dict(zip(attribution.causes, causes, strict=True))
+    small = {i for i, c in sized.items() if of_no_size(found.terms[i], found.of(i), c)}
+    for i, cause in sized.items():
+        worth = attribution.explained[i]
+        if (i in small and worth < least) or says_nothing(evidence, found, i, cause):
+            other = empty.setdefault(cause.actuator, i)
+            empty[cause.actuator] = i if worth < attribution.explained[other] else other
     for i in empty.values():
         if (fewer := _plainer(candidates, attribution, i)) is not None:
             return fewer
-    at = dict(zip(attribution.causes, causes, strict=True))
-    small = [i for i in empty.values() if _small(attribution, i, at)]
-    small = small if carried else [i for i in small if _bears(evidence, attribution, i, at)]
-    if small:
-        return _unnamed(evidence, attribution, small)
+    if carried and (nameless := small & set(empty.values())):
+        return _unnamed(evidence, attribution, sorted(nameless))
     for i in sorted(empty.values(), reverse=True):
         attribution = _simpler(candidates, attribution, i)
     return attribution
 
 
-def _small(attribution: Attribution, index: int, causes: Mapping[int, Cause]) -> bool:
-    """Return whether a cause, of those by their index, has no size of its own."""
-    return of_no_size(attribution.fit.terms[index], attribution.fit.of(index), causes[index])
-
-
-def _bears(evidence: Evidence, attribution: Attribution, index: int, causes: Mapping[int, Cause]) -> bool:
-    """Return whether another cause of the same place has a size beside a cause, and none without it.
-
-    A weight that is somewhat off is not told from the rest of the model; a friction is not told without it.
-    """
-    term = attribution.fit.terms[index]
-    if term.effect.extends_by:
-        return False  # a simpler law takes its place
-    sized = [i for i in attribution.causes if i != index and not _small(attribution, i, causes)]
-    fewer = without_term(evidence, attribution.fit, index)
-    for i in (i for i in sized if attribution.fit.terms[i].site == term.site):
-        at = i - (i > index)
-        other = causes[i].model_copy(update={"parameters": parameters(evidence, fewer, at)})
-        if of_no_size(fewer.terms[at], fewer.of(at), other):
-            return True
-    return False
-
-
 def says_nothing(evidence: Evidence, found: Fit, index: int, cause: Cause) -> bool:
-    """Return whether a cause has no size, cannot be, or does not shrink its gap on parts of the data left out."""
+    """Return whether a cause is no more than a simpler one, cannot be, or closes nothing of data left out."""
     term = found.terms[index]
     idle = cause.closure.value <= 0.0 or (cause.closure.low is not None and cause.closure.low <= 0.0)
-    return idle or of_no_size(term, found.of(index), cause) or impossible(evidence, term, found.of(index), cause)
+    simple = any(map(_holds_zero, _bounded(cause, term.effect.extends_by)))
+    return idle or simple or impossible(evidence, term, found.of(index), cause)
 
 
 def of_no_size(term: Term, coefficients: Array, cause: Cause) -> bool:
-    """Return whether each size of a cause may be zero, or any number that tells it from a simpler effect may.
+    """Return whether each size of a cause may be zero.
 
     Args:
         term: of the fit.
         coefficients: (p,) of the term.
         cause: as quantified, with its intervals.
     """
-    bounded = {n: p for n, p in cause.parameters.items() if p.low is not None and p.high is not None}
-    sizes = [bounded[n] for n in sizes_of(term, coefficients) if n in bounded]
-    beyond = [bounded[n] for n in term.effect.extends_by if n in bounded]
-    return (bool(sizes) and all(map(_holds_zero, sizes))) or any(map(_holds_zero, beyond))
+    sizes = _bounded(cause, sizes_of(term, coefficients))
+    return bool(sizes) and all(map(_holds_zero, sizes))
+
+
+def _bounded(cause: Cause, names: Sequence[str]) -> list[Parameter]:
+    """Return those of some parameters of a cause that have an interval."""
+    told = (cause.parameters[n] for n in names if n in cause.parameters)
+    return [p for p in told if p.low is not None and p.high is not None]
 
 
 def without_open_sizes(attribution: Attribution, causes: Sequence[Cause]) -> list[Cause]:
-    """Return the causes of an attribution; a size known to no factor of `SPAN` is told as unknown, with its interval.
+    """Return the causes of an attribution; sizes known to no factor of `SPAN` are told as unknown, with their interval.
 
-    The cause stays: that there is a lag may be certain where its time is not.
+    So are those that may all be zero. The cause stays: that there is a lag may be certain where its time is not.
     """
     out = []
     for i, cause in zip(attribution.causes, causes, strict=True):
-        sizes = sizes_of(attribution.fit.terms[i], attribution.fit.of(i))
+        term, coefficients = attribution.fit.terms[i], attribution.fit.of(i)
+        none, sizes = of_no_size(term, coefficients, cause), sizes_of(term, coefficients)
         opened = {
-            n: p.model_copy(update={"means": OPEN}) for n, p in cause.parameters.items() if n in sizes and _open(p)
+            n: p.model_copy(update={"means": OPEN})
+            for n, p in cause.parameters.items()
+            if n in sizes and (_open(p) or (none and _bounded(cause, [n])))
         }
         out.append(cause.model_copy(update={"parameters": {**cause.parameters, **opened}}))
     return out
