@@ -18,7 +18,7 @@ IDENTIFIED = "identified"
 """What stands for the effect of a constant that is no cause."""
 READINGS = "readings"
 """What stands for the effect of the noise of readings."""
-FORCES = ("coulomb", "static", "offset")
+FORCES = ("coulomb", "static", "offset", "arm")
 """Constants that a servo without a recorded force gives in units of its stiffness, m or rad."""
 
 
@@ -76,13 +76,14 @@ class NotExpressed:
 
 
 def changes_of(
-    causes: Sequence[Cause], joints: Mapping[str, str] | None = None
+    causes: Sequence[Cause], joints: Mapping[str, str] | None = None, own: bool = False
 ) -> tuple[list[Change], list[NotExpressed]]:
     """Return the numbers that causes set, constants of a joint or their own, and the causes of which none can be used.
 
     Args:
         causes: of a verdict.
         joints: axis of the verdict -> joint of the model, where their names differ.
+        own: whether the model has its forces and masses in the unit of the recorded effort, as the verdict has.
     """
     changes: list[Change] = []
     left_out: list[NotExpressed] = []
@@ -90,9 +91,9 @@ def changes_of(
         if cause.condition is not None:
             left_out.append(_whole(cause, joints, f"it acts under {cause.condition} alone; a model has none"))
             continue
-        own = next((p.unit for p in cause.parameters.values() if p.unit.startswith(NO_FORCE)), None)
-        if own is not None:
-            left_out.append(_whole(cause, joints, f"it is in {own}: state the gain of the drive, N or N m per unit"))
+        unit = next((p.unit for p in cause.parameters.values() if p.unit.startswith(NO_FORCE)), None)
+        if unit is not None and not own:
+            left_out.append(_whole(cause, joints, f"it is in {unit}: state the gain of the drive, N or N m per unit"))
             continue
         joint = (joints or {}).get(cause.actuator, cause.actuator)
         known = constants_of(cause)

@@ -54,6 +54,7 @@ def export(
     model: Path | Element | None = None,
     joints: Mapping[str, str] | None = None,
     motors: Motors | None = None,
+    own: bool = False,
 ) -> Exported:
     """Write the causes of a verdict, the inertias it identified and the noise of its readings into a model.
 
@@ -63,13 +64,14 @@ def export(
         model: file of the nominal model, or its root element; those in XML are changed in place of being made anew.
         joints: axis of the verdict -> joint of the model, where their names differ.
         motors: how motors that move several joints travel, where the case has a `coupling`.
+        own: whether the model has its forces in the unit of the recorded effort, whatever that is.
 
     Raises:
         ExportError: no such target, the model is needed and missing, it cannot be read or has none of the joints, or
             the case has a `coupling` and `motors` are not stated.
     """
     motors = travels_of(verdict, motors)
-    done, text = put(verdict.causes, target, model, joints, motors, verdict.identified, verdict.noise)
+    done, text = put(verdict.causes, target, model, joints, motors, verdict.identified, verdict.noise, own)
     return replace(done, text=text(remarks(verdict, done.applied, done.not_expressed)))
 
 
@@ -89,6 +91,7 @@ def put(
     motors: Motors | None = None,
     identified: Sequence[Identified] = (),
     noise: Sequence[Noise] = (),
+    own: bool = False,
 ) -> tuple[Exported, Callable[[Sequence[str]], str]]:
     """Write causes, identified inertias and noise into a model; return what was done, and what makes the text.
 
@@ -99,7 +102,7 @@ def put(
     """
     if target not in TARGETS:
         raise ExportError("no such target", value=target, limit=", ".join(TARGETS), remedy="choose one of them")
-    changes, not_expressed = changes_of(causes, joints)
+    changes, not_expressed = changes_of(causes, joints, own)
     changes += identified_changes(identified, joints)
     changes += [x for x in noise_changes(noise, joints) if x.constant in TARGETS[target].fields]
     writer = opened(TARGETS[target], model)

@@ -1,13 +1,15 @@
 """The exported model on recorded commands, and the motion that ranges cover."""
 
+from dataclasses import replace
 from pathlib import Path
 from xml.etree.ElementTree import tostring
 
 import numpy as np
 import pytest
+from sher3_chain.axes.machine import Axes
 from sher3_diagnosis import diagnose
 from sher3_diagnosis.verdict import Interval
-from sher3_export import ExportError
+from sher3_export import ExportError, export
 from sher3_export.check import check as checking
 from sher3_export.check import coverage as covering
 from sher3_export.check import engine
@@ -15,7 +17,7 @@ from sher3_export.check.check import Checked, JointGap, check
 from sher3_export.check.coverage import DRAWS, Windows, covered, inside, scatter_of
 from sher3_export.errors import MujocoMissing
 from sher3_export.ranges import Ranges, interval, shares_of, worlds_of
-from slides import driven, machine, run_of
+from slides import columns, driven, machine, run_of
 from verdicts import cause, verdict
 
 
@@ -45,6 +47,39 @@ def test_numbers_that_were_not_applied_would_show(case):
     wrong = verdict(cause("coulomb_friction", force=0.1))
     (gap,) = check(wrong, Path("case"), None).gaps
     assert gap.after > 0.9 * gap.before
+
+
+def test_a_model_of_the_case_has_its_forces_in_the_unit_of_the_record(case):
+    """Masses and forces without a gain are in one unit, so that the motion is right; in another model they are not."""
+    units = {"N": "eu", "N/(m/s)": "eu/(m/s)", "m": "m"}
+    causes = [
+        c.model_copy(
+            update={"parameters": {n: p.model_copy(update={"unit": units[p.unit]}) for n, p in c.parameters.items()}}
+        )
+        for c in case.causes
+    ]
+    own = case.model_copy(update={"causes": causes})
+    (gap,) = check(own, Path("case"), None).gaps
+    assert gap.after < 0.02 * gap.before
+    assert all("state the gain" in x.reason for x in export(own, "yaml").not_expressed)
+
+
+def test_an_axis_that_nothing_drives_and_of_no_known_mass_is_in_no_model(slide, monkeypatch):
+    pole = {
+        "name": "pole",
+        "motion": "rotary",
+        "signals": columns("position", unit="rad"),
+        "command_law": {"kind": "none"},
+        "encoder_resolution": 1e-4,
+    }
+    chain = machine().described
+    both = chain.model_copy(update={"axes": [*chain.axes, type(chain.axes[0])(**pole)]})
+    runs = [
+        replace(run, signals={**run.signals, "pole": {"position": np.sin(np.arange(run.ticks) * 0.01)}})
+        for run in slide[1]
+    ]
+    monkeypatch.setattr(checking, "open_case", lambda path: (Axes(both), runs))
+    assert [gap.joint for gap in check(slide[2], Path("case"), None).gaps] == ["slide"]
 
 
 @pytest.mark.parametrize(("errors", "worse"), [([(1.0, 1.5), (1.0, 0.8)], True), ([(1.0, 1.1), (2.0, 0.4)], False)])

@@ -3,6 +3,7 @@
 import mujoco
 import numpy as np
 import pytest
+from sher3_diagnosis.verdict import Parameter
 from sher3_export import export
 from sher3_export.xml_file import parse_xml
 from verdicts import cause, verdict
@@ -32,6 +33,18 @@ def test_a_cogging_takes_no_control_and_is_the_force_that_the_drive_then_needs()
     assert not done.not_expressed and model.nu == 1
     for q in (0.0, 0.1, 0.37):
         assert given(model, q, 0.0) == pytest.approx(-0.5 * np.sin(12.0 * q + 0.3))
+
+
+@pytest.mark.parametrize("unit", ["N*m", "rad"])
+def test_a_weight_at_an_arm_is_a_cogging_of_one_period(unit):
+    """Against the drive a sin(q - hanging), whatever hangs on the joint; of a servo without forces times its kp."""
+    hanging = Parameter(value=0.4, low=0.3, high=0.5, unit="rad")
+    done, model = written(cause("gravity_load", unit=unit, arm=0.5, hanging=hanging))
+    assert not done.not_expressed and model.nu == 1
+    for q in (0.0, 0.4, 1.7):
+        assert given(model, q, 0.0) == pytest.approx(
+            -0.5 * (200.0 if unit == "rad" else 1.0) * np.sin(q - 0.4), abs=1e-6
+        )
 
 
 def test_friction_at_rest_moves_with_that_in_motion_into_lugre_s_law():

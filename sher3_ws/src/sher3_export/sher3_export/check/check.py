@@ -85,7 +85,7 @@ def check(
     Args:
         verdict: of the case.
         case: folder of a chain of axes.
-        model: MJCF; None: made of the case's description.
+        model: MJCF; None: made of the case's description, with forces and masses in the unit of the recorded effort.
         joints: axis -> joint of the model, where their names differ.
         motors: how motors that move several joints travel, where the case has a `coupling`.
 
@@ -93,8 +93,11 @@ def check(
         MachineError, ExportError: see `nominal_model`; motors are not stated; MuJoCo is missing or refuses the model.
     """
     bench = bench_of(verdict, case, model, joints or {}, motors)
-    exported = export(verdict, "mjcf", copied(bench.original), joints, motors)
-    engines = (bench.nominal, bench.compiled(export(verdict, "mjcf", copied(bench.root), joints, motors).text))
+    exported, run = (
+        export(verdict, "mjcf", copied(root), joints, motors, own=model is None)
+        for root in (bench.original, bench.root)
+    )
+    engines = (bench.nominal, bench.compiled(run.text))
     errors = [[engine.run(record) for record in bench.records] for engine in engines]
     units = {name: track.unit for name, track in bench.records[0].tracks.items()}
     found = [gap_of(n, units[n], *([x[n] for x in error] for error in errors)) for n in bench.joints]

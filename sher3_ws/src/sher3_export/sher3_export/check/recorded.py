@@ -71,7 +71,8 @@ def recorded(machine: object, runs: Sequence[Any], joints: Mapping[str, str], la
             "check a chain of axes or an arm in motion; the SHER's verdicts are checked by `sher3 gap apply --case`"
         )
         raise ExportError("records of this kind of machine are not run in MuJoCo", remedy=remedy)
-    axes, coupled = machine.described.chain, isinstance(machine, Manipulator) and machine.described.coupling is not None
+    axes = [axis for axis in machine.described.chain if isinstance(machine, Manipulator) or not left_alone(axis)]
+    coupled = isinstance(machine, Manipulator) and machine.described.coupling is not None
     late = late and not coupled  # what a motor that moves several joints is late by no model can be given
     out = []
     for run in runs:
@@ -83,6 +84,11 @@ def recorded(machine: object, runs: Sequence[Any], joints: Mapping[str, str], la
         tracks = {joints.get(axis.name, axis.name): track_of(run, axis, q, drive, late) for axis, q, drive in each}
         out.append(Recorded(run.period, tracks))
     return out
+
+
+def left_alone(axis: Axis) -> bool:
+    """Return whether an axis of a chain is in no model: nothing drives it, and nobody knows what it weighs."""
+    return axis.free and axis.mass is None
 
 
 def on_joints(

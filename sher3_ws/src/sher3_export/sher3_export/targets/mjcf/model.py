@@ -364,6 +364,10 @@ class Mjcf(XmlTarget):
             motor.COGGING,
             Row("dcmotor without input, cogging", lambda to, change, _: motor.cogging(to.root, change)),
         ),
+        **dict.fromkeys(
+            ("arm", "hanging"),
+            Row("dcmotor without input, cogging of one period", lambda to, change, _: motor.weight(to.root, change)),
+        ),
         "backlash": Row("a body of the motor's own and a second joint", _backlash),
         "compliance": Row("a body of the motor's own and a second joint", _compliance),
         "spring": Row("stiffness", lambda to, change, joint: to._add(joint, "stiffness", change.value)),

@@ -48,6 +48,14 @@ def cogging(root: Element, change: Change) -> str:
     return field_of(motor, "cogging", values)
 
 
+def weight(root: Element, change: Change) -> str:
+    """Write a weight at an arm, or where it hangs down: a cogging of one period a turn, whatever hangs on the joint."""
+    motor = passive(root, change.joint, "weight", fresh=change.constant == "arm")
+    amplitude, _, phase = numbers(motor.get("cogging"), f"0 1 {AGAINST}")
+    amplitude, phase = (change.value, phase) if change.constant == "arm" else (amplitude, AGAINST - change.value)
+    return field_of(motor, "cogging", [amplitude, 1.0, phase])
+
+
 def inertia_at(root: Element, joint: str) -> float:
     """Return what a force at a joint moves where all others are free, kg or kg m^2; 0 where MuJoCo cannot tell."""
     try:
