@@ -66,7 +66,8 @@ def excitation(
     q = checked("position", position, (n, 5))
     rate = np.gradient(q, period, axis=0) if velocity is None else checked("velocity", velocity, (n, 5))
     contact = np.zeros((n, 6)) if wrench is None else checked("wrench", wrench, (n, 6))
-    warmth = checked("temperature", np.broadcast_to(np.asarray(temperature, dtype=float), (n,)), (n,))
+    # A copy: an array that can be written, as all others; a view of one number would have the plant compiled twice.
+    warmth = checked("temperature", np.broadcast_to(np.asarray(temperature, dtype=float), (n,)).copy(), (n,))
     open_loop = None if command is None else checked("command", command, (n, 5))
     return Excitation(q, rate, contact, warmth, open_loop)
 

@@ -16,7 +16,7 @@ import numpy as np
 
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.fit.gram import products
-from sher3_diagnosis.fit.solving import RIDGE, solve, solve_within
+from sher3_diagnosis.fit.solving import RIDGE, leave_one_out, loss_under, solve
 from sher3_diagnosis.fit.standardised import Standardised
 from sher3_diagnosis.fit.term import Term, make_term
 
@@ -139,36 +139,12 @@ def _part(data: Standardised, terms: tuple[Term, ...]) -> _Part:
 
 def _fit_part(data: Standardised, terms: tuple[Term, ...]) -> _Part:
     pieces = {c: products(data, terms, c) for c in sorted({c for t in terms for c in t.channels})}
-    runs, limit = len(data.target), np.array([t.limit for t in terms for _ in range(t.width)])
-    normal = sum([n for n, _, _ in pieces.values()], np.zeros((runs, len(limit), len(limit))))
-    right = sum([b for _, b, _ in pieces.values()], np.zeros((runs, len(limit))))
-    # All runs together come first, then all but one of them.
-    total, whole = normal.sum(axis=0), right.sum(axis=0)
-    normals = np.concatenate([total[None], total - normal])
-    rights = np.concatenate([whole[None], whole - right])
-    if (known := np.isfinite(limit)).any():
-        normals += np.diag(known.astype(float))
-    solved = solve_within(normals, rights, limit)
-    held_out = _with_deviations(solved[1:], normals[0], rights[0], limit)
+    limit = np.array([t.limit for t in terms for _ in range(t.width)], dtype=float)
+    normal = sum([n for n, _, _ in pieces.values()], np.zeros((len(data.target), len(limit), len(limit))))
+    right = sum([b for _, b, _ in pieces.values()], np.zeros((len(data.target), len(limit))))
+    coefficients, held_out, total = leave_one_out(normal, right, limit)
     loss: dict[tuple[int, Channel], float] = {}
     for c, (a, b, energy) in pieces.items():
-        held = energy - 2.0 * np.einsum("rp,rp->r", held_out, b) + np.einsum("rp,rpq,rq->r", held_out, a, held_out)
-        per_run = enumerate(np.fmax(held, 0.0).tolist())
+        per_run = enumerate(loss_under(held_out, a, b, energy).tolist())
         loss |= {(r, c): x for r, x in per_run if (r, c) in data.null_loss}
-    return _Part(terms, solved[0], held_out, loss, total)
-
-
-def _with_deviations(held_out: Array, normal: Array, right: Array, limit: Array) -> Array:
-    """Replace the limited coefficients (runs, p) by those that fit all runs best beside the held-out causes.
-
-    A machine's deviations within tolerance are as much its own in the run left out: they are noise that repeats, known
-    up to their prior, and no claim that a run must confirm.
-    """
-    own = np.isfinite(limit)
-    if not own.any() or own.all():
-        return held_out if not own.any() else np.broadcast_to(solve_within(normal, right, limit), held_out.shape)
-    rest = right[own] - held_out[:, ~own] @ normal[np.ix_(~own, own)]
-    stacked = np.broadcast_to(normal[np.ix_(own, own)], (len(held_out), own.sum(), own.sum()))
-    out = held_out.copy()
-    out[:, own] = solve_within(stacked, rest, limit[own])
-    return out
+    return _Part(terms, coefficients, held_out, loss, total)

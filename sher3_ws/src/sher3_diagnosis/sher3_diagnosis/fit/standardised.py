@@ -17,6 +17,7 @@ class Standardised:
         residuals, floors: per run and channel.
         target: `target[r][c]` is the (N,) vector of channel c in run r: samples that count, components in turn.
         fits: kept by `sher3_diagnosis.fit.fitting`.
+        rows: per channel the target of all runs behind each other; by `fit.gram`.
         trails: per channel the terms of the last fit, each with its blocks and the products so far; by `fit.gram`.
     """
 
@@ -32,6 +33,7 @@ class Standardised:
         self.residuals = list(residuals)
         self.floors = list(floors)
         self.fits: dict[tuple[int, ...], Any] = {}
+        self.rows: dict[Channel, Any] = {}
         self.trails: dict[Channel, list[Any]] = {}
         self.target = list(target or self._targets())
 
