@@ -30,6 +30,11 @@ ALIGNED = 0.1
 """Share of the held-out loss that reading the effort half a period earlier or later must save before it is believed.
 Set by the argument that noise alone saves a few per cent."""
 
+HELD = 0.02
+"""Share of the travel of the axis that moves furthest, a quarter turn at most, below which one beside it is held:
+controllers give way by hundredths, and what is asked to move does so by more. Set by that argument.
+Measure: `pytest sher3_ws/src/sher3_chain/test/axes/test_carried.py`."""
+
 # -- dry friction at rest ------------------------------------------------------------------------------------------
 
 STATIC = 1.5

@@ -57,13 +57,13 @@ class AxisEvidence(ChainEvidence):
         return renamed(unit, self.axis.own_unit) if self.axis.own_unit else unit
 
 
-def gather_axis(runs: Sequence[AxesRun], axis: Axis, repeats: bool) -> AxisEvidence:
-    """Compute residuals and floors of one axis and cut them into blocks.
+def gather_axis(runs: Sequence[AxesRun], axis: Axis, repeats: bool, held: str = "") -> AxisEvidence:
+    """Compute residuals and floors of one axis and cut them into blocks; `held`: why its force says nothing.
 
     An axis of which nothing else can be judged, because its effort is dead, tells no force balance, or one whose floor
     is larger than its forces, is judged by how it follows its reference, where one was recorded.
     """
-    found = _gathered(runs, axis, repeats)
+    found = _gathered(runs, axis, repeats, held)
     tracked = axis.tracked if all("reference" in run.signals[axis.name] for run in runs) else None
     signal = partial(signal_of, found)
     if tracked is None or any(c.stage != BALANCE or hidden_share(found, c, signal) < 1.0 for c in found.channels):
@@ -84,7 +84,7 @@ def signal_of(evidence: AxisEvidence, r: int, site: str, ok: Mask) -> Array:
     return np.maximum(np.abs(given), np.abs(needed))
 
 
-def _gathered(runs: Sequence[AxesRun], axis: Axis, repeats: bool) -> AxisEvidence:
+def _gathered(runs: Sequence[AxesRun], axis: Axis, repeats: bool, held: str = "") -> AxisEvidence:
     """Compute residuals and floors of one axis as it is described."""
     signals: Sequence[AxisSignals] = [signals_of(run, axis, "repeats" if repeats else run.name) for run in runs]
     slip = slip_of(signals, axis) or ""
@@ -95,8 +95,8 @@ def _gathered(runs: Sequence[AxesRun], axis: Axis, repeats: bool) -> AxisEvidenc
     axis, stops = with_stops(signals, axis)
     notes = [*levels_of(signals, axis), *notes, *stops]
     mass, interval = (axis.mass, None) if isinstance(axis.mass, float) else (0.0, None)
-    not_judged, load_mass = slip, 0.0
-    if axis.mass == "unknown" and all(s.effort is not None for s in signals):
+    not_judged, load_mass = held or slip, 0.0
+    if not held and axis.mass == "unknown" and all(s.effort is not None for s in signals):
         try:
             acts = acting(signals, axis)
             load_mass = load_mass_of([AxisView(s, axis, 0.0) for s in acts])

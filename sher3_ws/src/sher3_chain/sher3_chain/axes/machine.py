@@ -30,6 +30,7 @@ from sher3_chain.axes.foreseen import foreseen
 from sher3_chain.axes.limits import LIMIT, limit_finding
 from sher3_chain.axes.replay import replay
 from sher3_chain.chain.machine import Chain
+from sher3_chain.chain.view import held_beside
 from sher3_chain.joint.bounds import within_bounds
 from sher3_chain.joint.conditions import Condition
 from sher3_chain.joint.description import AxesDescription, Axis, Gravity
@@ -74,10 +75,11 @@ class Axes(Chain[AxisEvidence]):
     def gather(self, runs: Sequence[AxesRun]) -> Sequence[AxisEvidence]:
         """Compute residuals and floors of every axis; raises MachineError where an unknown mass cannot be found."""
         parts: list[AxisEvidence] = []
+        held = held_axes(runs, self.described.axes)
         for axis in self.described.axes:
             heard = [without_wrong(run, axis) for run in runs]
             if all("position" in run.signals[axis.name] for run in heard):
-                parts.append(gather_axis(heard, axis, self.repeated(runs)))
+                parts.append(gather_axis(heard, axis, self.repeated(runs), held.get(axis.name, "")))
                 law = law_of_axis(heard, axis)
                 parts += [law] if law is not None else []
         if not parts:
@@ -181,6 +183,23 @@ class Commands(Axes):
     def remarks(self, finding: Finding[AxisEvidence]) -> list[str]:
         """Say whether the command is what its law states."""
         return law_notes(finding)
+
+
+def held_axes(runs: Sequence[AxesRun], axes: Sequence[Axis]) -> dict[str, str]:
+    """Return driven axis -> why its force balance says nothing, of those that are held while another one moves far.
+
+    What such an axis moves by is how its controller gives way to the others, or a rest of numbers, and its force is the
+    answer: both follow laws that are none of the axis.
+    """
+    travels = [max(float(np.ptp(run.signals[a.name].get("position", [0.0]))) for run in runs) for a in axes]
+    why = (
+        "it is held while others move far, and its force answers them; describe an arm as `kind: manipulator`, or take"
+    )
+    return {
+        axis.name: f"axis {axis.name}: moves by {travel:.2g} {axis.unit_of_position}: {why} out what it is no part of"
+        for axis, travel, held in zip(axes, travels, held_beside(travels, [a.motion for a in axes]), strict=True)
+        if held and axis.driven and not axis.servo
+    }
 
 
 def nothing_judged(parts: Sequence[AxisEvidence], runs: Sequence[AxesRun]) -> MachineError:

@@ -18,12 +18,15 @@ from sher3_effects.operators import dahl_turned
 
 from sher3_chain.joint.description import Axis
 from sher3_chain.readings.signals import AxisSignals
+from sher3_chain.thresholds import HELD
 
 LEAD_OF_STROKE = 0.02
 """Share of the stroke that replaces the lead of a linear axis where it is not known. Effects search displacements in
 shares of the lead; of a turning axis one turn stands for it."""
 BUILDS_UP = 2.5e-3
 """Share of the lead over which dry friction builds up after a reversal: the middle one that the effects search."""
+QUARTER = 0.5 * np.pi
+"""A quarter turn, rad."""
 SLIP = 1e-9
 """Viscous coefficient in place of none, N/(m/s) or N m/(rad/s): effects take it as a scale."""
 REFERENCE = 20.0
@@ -201,3 +204,13 @@ class ChainView(GridView, ABC):
             "load": Quantity(weight, newton, "the weight on the joint", "force"),
             "time": Quantity(run.stage_clock, "s", "the time since the run began", "clock"),
         }
+
+
+def held_beside(travels: Sequence[float], motions: Sequence[str]) -> Mask:
+    """Return (n,) which joints are held while another of their kind moves far, given what each travels, m or rad.
+
+    A joint that turns on and on counts for a quarter turn: how far a controller gives way does not grow with it.
+    """
+    far = np.array([min(t, QUARTER) if motion == "rotary" else t for t, motion in zip(travels, motions, strict=True)])
+    widest = np.array([max(far[[other == motion for other in motions]]) for motion in motions])
+    return np.asarray(far < HELD * widest)

@@ -12,7 +12,7 @@ from sher3_diagnosis.channel import Array, Mask
 from sher3_diagnosis.filter import settled
 from sher3_effects.view import NominalAxis
 
-from sher3_chain.chain.view import AROUND_STOP, LEAD_OF_STROKE, SLIP, ChainView, Loads
+from sher3_chain.chain.view import AROUND_STOP, LEAD_OF_STROKE, SLIP, ChainView, Loads, held_beside
 from sher3_chain.manipulator.description import Joint
 from sher3_chain.manipulator.encoders import crossing
 from sher3_chain.manipulator.model import PARAMETERS, ROUNDED, ArmModel, point_inertia
@@ -254,11 +254,15 @@ class MotionView(ChainView):
 
     @cached_property
     def moving(self) -> Mask:
-        """(g, k) True where a joint moves: at rest friction takes any value, and the force balance says nothing."""
+        """(g, k) True where a joint moves: at rest friction takes any value, and the force balance says nothing.
+
+        Nor does it where a joint is held and trembles while others of its kind move far.
+        """
         run, half = self.run, max(1, self.run.stride)
         before = run.smooth[np.maximum(run.grid - half, 0)]
         after = run.smooth[np.minimum(run.grid + half, run.ticks - 1)]
-        return np.abs(after - before) > np.array([j.encoder_resolution for j in self.joints])
+        held = held_beside(np.ptp(run.smooth, axis=0).tolist(), [joint.motion for joint in self.joints])
+        return (np.abs(after - before) > np.array([j.encoder_resolution for j in self.joints])) & ~held
 
     @cached_property
     def turning(self) -> Mask:

@@ -108,9 +108,11 @@ def drafted(path: Path, tables: Tables, rate: float | None, guesses: list[str], 
         alone = table and sum(n.startswith(table + "/") for n in tables) == 1  # a name with a slash, and no table
         time = {"column": clock if alone else bare(clock)}
         time["unit"] = time_unit(clock, tables[clock], guesses)
-    period = 1.0 / rate if rate else period_of(tables[str(clock)]) * TIME_UNITS[time["unit"]]
     roles = placed(tables, clock, guesses, held)
     groups, left = together(paired(roles, tables, guesses))
+    own = [f"{table_of(signals['position'][0])}/{bare(clock)}" for signals in groups.values() if clock]
+    clock = next((name for name in own if name in tables), clock)  # stamps of the joints, not of another topic
+    period = 1.0 / rate if rate else period_of(tables[str(clock)]) * TIME_UNITS[time["unit"]]
     groups = measured(once(groups, tables, guesses), tables, guesses)
     known = {name for name, _ in roles}
     left += [n for n, x in tables.items() if n not in known and n != clock and moves(x)]

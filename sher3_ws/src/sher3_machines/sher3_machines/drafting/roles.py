@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Mapping
 from typing import Any
 
@@ -210,17 +211,21 @@ def together(placed: Mapping[Place, tuple[str, str]]) -> tuple[dict[str, dict[st
     """Return axis -> signal -> column, of axes with a position, and the columns that found no axis.
 
     A column whose name has no axis of its own, or another one than every position, belongs to the only axis there is,
-    or to the one axis whose name ends in the same number. Of two columns for one signal the one that was measured, in
-    the table of the position, comes first.
+    or to the one axis whose name ends in the same number, where it has none of its own. Of two columns for one signal
+    the one that was measured, in the table of the position, comes first. Where a topic has a table for each joint, what
+    other topics count as a place is no joint.
     """
     groups: dict[str, dict[str, Place]] = {}
     for place, (signal, axis) in sorted(placed.items(), key=lambda item: _rank(item[0], "")):
         if signal == "position":
             groups.setdefault(axis, {}).setdefault(signal, place)
-    tables = {table_of(signals["position"][0]) for signals in groups.values()}
+    joints = of_topics(groups)
+    tables = {table_of(signals["position"][0]) for signals in joints.values()}
     table = tables.pop() if len(tables) == 1 else ""
-    left = []
-    for place, (signal, axis) in sorted(placed.items(), key=lambda item: _rank(item[0], table)):
+    left = [s["position"][0] for axis, s in groups.items() if axis not in joints]
+    groups = joints
+    ranked = sorted(placed.items(), key=lambda item: (item[1][1] not in groups, *_rank(item[0], table)))
+    for place, (signal, axis) in ranked:
         if axis == EVERY:
             for signals in groups.values():
                 signals.setdefault(signal, place)
@@ -229,6 +234,15 @@ def together(placed: Mapping[Place, tuple[str, str]]) -> tuple[dict[str, dict[st
         if signal not in SIGNALS or home is None or groups[home].setdefault(signal, place) != place:
             left.append(place[0])
     return groups, list(dict.fromkeys(left))
+
+
+def of_topics(groups: dict[str, dict[str, Place]]) -> dict[str, dict[str, Place]]:
+    """Return the axes of topics with a table for each of several joints, `joint_states/elbow/position`; else all."""
+    places = {axis: signals["position"][0] for axis, signals in groups.items()}
+    topics = {axis: (table_of(table_of(place)), bare(place)) for axis, place in places.items()}
+    tables = Counter((table_of(table_of(place)), bare(place)) for place in set(places.values()))
+    several = {topic for topic, count in tables.items() if topic[0] and count > 1}
+    return {axis: signals for axis, signals in groups.items() if not several or topics[axis] in several}
 
 
 def once(groups: dict[str, dict[str, Place]], tables: Tables, guesses: list[str]) -> dict[str, dict[str, Place]]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Literal
+from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, field_validator, model_validator
 
@@ -33,6 +33,15 @@ class Description(Strict):
 
     kind: str
     name: str
+
+    @model_validator(mode="before")
+    @classmethod
+    def _each(cls, data: Any) -> Any:
+        """Take `column: [a, b, c]` with one unit as a list of columns."""
+        if not isinstance(data, dict):
+            return data
+        lists = {k: x for k, x in data.items() if isinstance(x, dict) and isinstance(x.get("column"), list | tuple)}
+        return {**data, **{k: [{**x, "column": name} for name in x["column"]] for k, x in lists.items()}}
 
     def named_files(self) -> tuple[str, ...]:
         """Return the paths the description gives, as written; a case gives them absolute."""

@@ -86,3 +86,13 @@ def test_a_reference_that_stays_is_none_where_a_drive_moves_the_axis(drive):
     assert "never changes, and is not used: Sollposition" in guesses
     alone = placed({name: x for name, x in columns.items() if name != drive}, "Zeit", [])
     assert ("Sollposition", None) in alone
+
+
+def test_where_a_topic_has_a_table_for_each_joint_places_of_other_topics_are_no_joints():
+    joints = [f"joint_states/{joint}/{what}" for joint in ("lift", "wrist_1") for what in ("position", "effort")]
+    others = ["tracker/x", "wrench/force_1", "move/feedback/status", "goal/start/joint_state.position"]
+    found = signals_of(*others, *joints)
+    assert found == {
+        joint: {what: f"joint_states/{joint}/{what}" for what in ("position", "effort")}
+        for joint in ("lift", "wrist_1")
+    }

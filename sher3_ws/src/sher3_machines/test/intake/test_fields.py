@@ -5,7 +5,7 @@ import pytest
 from pydantic import ValidationError
 from sher3_machines import MachineError
 from sher3_machines.intake.columns import pick, stamps_of
-from sher3_machines.intake.fields import Clock, Column
+from sher3_machines.intake.fields import Clock, Column, Description
 
 
 def test_a_factor_comes_on_top_of_the_unit():
@@ -46,3 +46,11 @@ def test_units_are_taken_as_people_write_them():
     written = {"N m": 1.0, "Nm": 1.0, "mNm": 1e-3, "turns/s": 2.0 * np.pi, "°": np.pi / 180.0}
     for unit, scale in written.items():
         assert Column(column="x", unit=unit).scale == pytest.approx(scale)
+
+
+def test_several_columns_of_one_unit_are_written_as_one():
+    class Arm(Description):
+        joints: tuple[Column, ...]
+
+    found = Arm.model_validate({"kind": "arm", "name": "a", "joints": {"column": ["j1", "j2"], "unit": "deg"}})
+    assert found.joints == (Column(column="j1", unit="deg"), Column(column="j2", unit="deg"))

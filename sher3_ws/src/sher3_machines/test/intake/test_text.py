@@ -168,3 +168,18 @@ def test_curves_that_a_plotter_saved_are_channels_with_stamps(tmp_path):
     assert len(found["/js/q[3]/value"]) == 31 and len(found["/js/effort[3]/stamp"]) == 30
     left = tables(tmp_path, "t,ball_x,ball_y\n" + "\n".join(f"{i},{i},{-i}" for i in range(30)) + "\n")
     assert list(left) == ["t", "ball_x", "ball_y"]
+
+
+def test_settings_stand_above_and_below_a_header_with_stamps_of_windows(tmp_path):
+    """An export of a Beckhoff scope: the header is the line of words that is as wide as the table."""
+    above = (
+        "Name;of a test;\nStarttime;132900081483250000;Tuesday, February 22, 2022;13:55:48\n\nTrigger;Count;Release;\n"
+    )
+    below = "".join(
+        f"{name};{value};{value}\n" for name, value in zip("ABCDEFG", ["x", 8, 8, "True", 0, 852, 1], strict=True)
+    )
+    rows = "".join(f"{132900081483250000 + 100_000 * k};{k};{0.5 * k}\n" for k in range(60))
+    found = tables(tmp_path, f"{above}\nName;Act (Counter);Act (Resolver)\n{below}{rows}EOF\n")
+    assert list(found) == ["Name", "Act (Counter)", "Act (Resolver)"]
+    assert found["Name"][:3] == pytest.approx([1645534548.325, 1645534548.335, 1645534548.345], abs=1e-5)
+    assert found["Act (Resolver)"][:60].tolist() == [0.5 * k for k in range(60)]

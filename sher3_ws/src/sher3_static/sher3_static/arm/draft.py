@@ -60,7 +60,7 @@ def draft_postures(path: Path, tables: Tables, model: Path) -> Draft | None:
         f"noise of {NOISE:g} m is a placeholder: state that of the instrument",
     ]
     data: dict[str, Any] = {"kind": "arm", "name": name_of(path)}
-    slides = {joint.get("name") for joint in root.iter("joint") if joint.get("type") == SLIDES}
+    slides = {joint.get("name") for joint in root.findall("joint") if joint.get("type") == SLIDES}
     data["joint_positions"] = [
         _column(n, columns, joint in slides) for n, (joint, _, _) in zip(own, chain, strict=True)
     ]
@@ -100,14 +100,14 @@ def numbered(columns: Mapping[str, Any], joints: Sequence[str]) -> dict[str, str
 def moving(root: ElementTree.Element) -> list[str]:
     """Return the names of the joints of a URDF that move, from the root outwards."""
     above = {child: (joint, parent) for joint, parent, child in joints_of(root)}
-    kinds = {joint.get("name", ""): joint.get("type", "") for joint in root.iter("joint")}
+    kinds = {joint.get("name", ""): joint.get("type", "") for joint in root.findall("joint")}
     found = [(_depth(child, above), joint) for child, (joint, _) in above.items() if kinds[joint] in (*TURNS, SLIDES)]
     return [joint for _, joint in sorted(found, key=lambda each: each[0])]
 
 
 def joints_of(root: ElementTree.Element) -> list[tuple[str, str, str]]:
     """Return joint, parent and child link of every joint of a URDF that has them."""
-    ends = [(joint.get("name", ""), joint.find("parent"), joint.find("child")) for joint in root.iter("joint")]
+    ends = [(joint.get("name", ""), joint.find("parent"), joint.find("child")) for joint in root.findall("joint")]
     return [(name, a.get("link", ""), b.get("link", "")) for name, a, b in ends if a is not None and b is not None]
 
 

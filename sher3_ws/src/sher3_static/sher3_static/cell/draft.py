@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from sher3_diagnosis.channel import Array
 from sher3_machines.drafting.draft import name_of, unused, written
-from sher3_machines.drafting.names import bare_and_unit, named, tells_time, vocabulary, words_of
+from sher3_machines.drafting.names import bare_and_unit, counts_samples, named, tells_time, vocabulary, words_of
 from sher3_machines.intake.fields import Column
 from sher3_machines.intake.kind import Draft
 from sher3_machines.intake.spelling import bare
@@ -32,19 +32,23 @@ PLACES = ("position", "reference", "velocity", "temperature")
 
 
 def loads_of(tables: Tables) -> tuple[str, str] | None:
-    """Return the columns of known load and reading of a table without a time; None where it has no such."""
+    """Return the columns of known load and reading of a table without a time; None where it has no such.
+
+    A reading is called otherwise than the loads, where one follows them. Of several columns for either, as the load
+    that was meant and the one that was laid on, those two are taken that go together best, in a unit where one has it.
+    """
     flat = {n: x for n, x in tables.items() if x.ndim == 1 and np.isfinite(x).mean() >= 1.0 - LACKING}
     if any(tells_time(n) for n in tables) or {"force", "torque"} <= wrench_of(tables).keys():
         return None
     displaced = any(named(n).signal == "position" and np.ptp(x) > 0.0 for n, x in flat.items())
     known = (STATED,) if displaced else (STATED, FORCE)  # a force beside travel is what a spring gave
-    names = [n for words in known for n in flat if words & set(words_of(bare_and_unit(bare(n))[0]))]
-    for load in dict.fromkeys(names):
-        x = flat[load]
-        for other, y in flat.items():
-            alike = other != load and len(y) == len(x) >= FEWEST and named(other).signal not in PLACES
-            if alike and _follows(*_both(x, y)):
-                return load, other
+    called = [[n for n in flat if words & set(words_of(bare_and_unit(bare(n))[0]))] for words in known]
+    reads = [n for n in flat if named(n).signal not in PLACES and not counts_samples(n)]
+    for loads in called:
+        pairs = [(load, n) for load in loads for n in reads if n != load and _likeness(flat[load], flat[n]) > FOLLOWS]
+        apart = [pair for pair in pairs if not any(pair[1] in names for names in called)] or pairs
+        if apart:
+            return max(apart, key=lambda pair: (_unit_of(pair[0]) in LOADS, _likeness(flat[pair[0]], flat[pair[1]])))
     return None
 
 
@@ -60,9 +64,10 @@ def draft_cell(path: Path, tables: Tables) -> Draft | None:
         return None
     load, read = found
     guesses = ["a load cell: a table of known loads and what was read; a record in time needs a column named t or time"]
-    said = bare_and_unit(bare(load))[1]
+    said = _unit_of(load)
     said = said if said in LOADS else None
-    applied = Column(column=load, unit=said or "N")
+    turned = vocabulary("torque drehmoment") & set(words_of(bare(load)))
+    applied = Column(column=load, unit=said or ("N*m" if turned else "N"))
     why = "its name says so" if said else "nobody states it"
     guesses.append(f"loads are {load!r}, in {applied.unit}, because {why}")
     x, y = _both(as_weight(applied) * applied.scale * tables[load], tables[read])
@@ -76,13 +81,19 @@ def draft_cell(path: Path, tables: Tables) -> Draft | None:
     return written(data, guesses)
 
 
+def _unit_of(column: str) -> str | None:
+    return bare_and_unit(bare(column))[1]
+
+
 def _both(x: Array, y: Array) -> tuple[Array, Array]:
     """Return the rows of two columns that have both numbers."""
     known = np.isfinite(x) & np.isfinite(y)
     return x[known], y[known]
 
 
-def _follows(x: Array, y: Array) -> bool:
-    """Return whether one of two columns reads the other, of enough different loads."""
-    moves = len(np.unique(x)) >= LEVELS and np.ptp(y) > 0.0
-    return bool(moves and abs(np.corrcoef(x, y)[0, 1]) > FOLLOWS)
+def _likeness(x: Array, y: Array) -> float:
+    """Return the correlation of two columns without its sign, of enough different loads; else 0."""
+    if not len(x) == len(y) >= FEWEST:
+        return 0.0
+    x, y = _both(x, y)
+    return abs(float(np.corrcoef(x, y)[0, 1])) if len(np.unique(x)) >= LEVELS and np.ptp(y) > 0.0 else 0.0

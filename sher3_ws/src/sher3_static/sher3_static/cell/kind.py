@@ -13,9 +13,9 @@ from sher3_machines.thresholds import BLOCKS
 
 from sher3_static.cell.description import CellDescription
 from sher3_static.cell.draft import draft_cell
-from sher3_static.cell.reading import read_cell, scatter, unloading
+from sher3_static.cell.reading import LEAST_ROWS, MORE_ROWS, read_cell, scatter, unloading
 from sher3_static.kind import TableKind
-from sher3_static.readings import Readings, joined, warmed
+from sher3_static.readings import Readings, enough, joined, warmed
 from sher3_static.reporter import Words
 from sher3_static.table import Table, TableEvidence
 
@@ -48,6 +48,7 @@ class CellKind(TableKind[CellDescription]):
         rows = joined(runs)
         side = np.concatenate([unloading(run["applied"]) for run in runs])
         view = CellView(warmed(runs), rows["applied"], side)
+        enough(f"{known.name}: too few readings", view.rows, LEAST_ROWS, MORE_ROWS)
         least = RESOLVED * float(np.ptp(rows["applied"]))
         floor = known.noise or max(scatter(view, rows["reading"], rows["run"]), least)
         table = Table(

@@ -23,7 +23,8 @@ from sher3_static.readings import (
 )
 
 LEAST_ROWS = 12
-"""Readings that a record must have: six forces, going and coming."""
+"""Readings that all records must have: six forces, going and coming."""
+MORE_ROWS = "record more readings: six forces with growing and with falling load are enough"
 LEAST_FORCES = 3
 """Different forces that it must have: two tell no more than a line."""
 SLIPPED = 3.0
@@ -38,13 +39,11 @@ def read_cell(name: str, tables: Tables, description: CellDescription) -> Readin
     """Check the columns of a file and bring them to SI units: `applied`, `reading`, `temperature`.
 
     Raises:
-        MachineError: a column is missing, too few readings or forces, a dead channel, or a factor that is far off.
+        MachineError: a column is missing, too few forces, a dead channel, or a factor that is far off.
     """
     applied = pick(description.applied, tables, name) * as_weight(description.applied)
-    reading = pick_beside((len(applied),), description.reading, tables, name)
+    reading = pick_beside((len(applied),), description.reading, tables, name) * as_weight(description.reading)
     warm = temperature(description.temperature, len(applied), tables, name)
-    remedy = "record more readings: six forces with growing and with falling load are enough"
-    enough(f"{name}: too few readings", len(applied), LEAST_ROWS, remedy)
     span = float(np.ptp(applied))
     forces = len(np.unique(np.round(applied / (SAME * span)))) if span else 1
     enough(f"{name}: too few different forces", forces, LEAST_FORCES, "apply more different forces")

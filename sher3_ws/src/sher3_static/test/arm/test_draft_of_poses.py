@@ -20,6 +20,7 @@ URDF = (
         f'<origin xyz="0 0 {LENGTH}"/><axis xyz="{int(axis == "x")} {int(axis == "y")} {int(axis == "z")}"/></joint>'
         for before, (name, axis) in zip(("base", *(f"{n}_link" for n in AXES)), AXES.items(), strict=False)
     )
+    + "".join(f'<transmission name="{name}"><joint name="{name}_joint"/></transmission>' for name in AXES)
     + "</robot>"
 )
 

@@ -111,3 +111,12 @@ def test_a_force_that_a_spring_gave_over_its_travel_is_no_known_load(tmp_path):
     )
     with pytest.raises(MachineError, match="force over speed or travel"):
         draft_of(tmp_path / "a.csv")
+
+
+@pytest.mark.parametrize("read", ["bridge", "mean_volts_per_volt"])
+def test_of_loads_that_were_meant_and_laid_on_the_one_is_taken_that_the_reading_follows(tmp_path, read):
+    """And a reading that is called otherwise than loads are, whatever follows them besides."""
+    laid = LEVELS + 0.4 * np.random.default_rng(2).normal(size=len(LEVELS))
+    header = f"no,nominal_torque,mean_torque,{read}"
+    found = drafted(tmp_path, header, np.arange(len(LEVELS)), LEVELS, laid, 1e-6 * (30.0 + laid))
+    assert "loads are 'mean_torque', in N*m" in found.text and f"the reading is '{read}'" in found.text

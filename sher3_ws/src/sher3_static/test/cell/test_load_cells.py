@@ -82,6 +82,8 @@ def test_bad_records_are_refused_with_a_remedy(change, said):
         read_cell("a", {**weighed(), **change}, description())
 
 
-def test_few_readings_are_refused():
+def test_few_readings_are_refused_and_two_records_count_together():
+    up, down = ({name: x[part] for name, x in weighed(zero=2.0).items()} for part in (slice(0, 11), slice(10, 21)))
     with pytest.raises(MachineError, match="too few readings; value 11; limit 12; record more"):
-        read_cell("a", {name: x[:11] for name, x in weighed().items()}, description())
+        found(up)
+    assert found(up, down)[1] == {"force_bias": {"force": pytest.approx(2.0, abs=0.1)}}

@@ -16,10 +16,17 @@ MOST_TITLES = 50
 """Lines of text above a table at most."""
 FILLED = 0.5
 """Share of the numbers of a usual row beyond which a row belongs to the table and no longer to its titles."""
+SETTINGS = 6
+"""Rows between a header and the first one that is full of numbers, from which they are settings."""
 LONGEST_UNIT = 10
 """Letters of a unit at most."""
 FEW = 0.02
 """Share of the cells of a column that may be text, such as `ERR`, a remark, or a line that ends the file."""
+
+FILETIMES = 1.2e17, 1.7e17
+"""Stamps of Windows of the years 1981 to 2139."""
+BEFORE_1970 = 11_644_473_600.0
+"""Seconds from 1601 to 1970."""
 
 Rows = Sequence[Sequence[str]]
 
@@ -35,7 +42,7 @@ def columns_of(rows: Rows, comma: bool, names: Sequence[str] = ()) -> dict[str, 
     Of columns of one name the second is `NAME.2`; loggers write the stamps of each channel again: those are left out.
     Of several tables, one below the other with a header each, the columns stand side by side.
     """
-    rows = rows[_titles(rows, comma) :]
+    rows = _without_settings(rows[_titles(rows, comma) :], comma)
     below = _second_header(rows, comma)
     if below is not None and rows[0] == rows[below]:  # one log that was begun again
         return columns_of([row for row in rows if row != rows[0] or row is rows[0]], comma, names)
@@ -83,7 +90,7 @@ def _one_table(rows: Rows, comma: bool, names: Sequence[str]) -> dict[str, Array
         header, rows = _with_units(header, rows[0]), rows[1:]
     out: dict[str, Array] = {}
     for i, name in enumerate(header):
-        x = _column([row[i] if i < len(row) else "" for row in rows], comma)
+        x = _dated(_column([row[i] if i < len(row) else "" for row in rows], comma))
         same = [known for known in out if known == name or known.startswith(f"{name}.")] if name in header[:i] else []
         nothing = not name and x is not None and bool(np.isnan(x).all())  # cells that fill a row up
         if x is not None and not nothing and not any(np.array_equal(out[known], x, equal_nan=True) for known in same):
@@ -100,8 +107,9 @@ def _titles(rows: Rows, comma: bool) -> int:
     """Return how many rows of text stand above the header.
 
     The header is the row above the numbers whose filled cells are most nearly those that the numbers fill, of several
-    the first: units stand below it. A spreadsheet fills the lines above its table up with empty cells, so that they are
-    as wide as the table; a logger of drives writes settings there that are wider, and are no header of it.
+    the first that is as wide and holds no number: units stand below it. A spreadsheet fills the lines above its table
+    up with empty cells, so that they are as wide as the table; a logger of drives writes settings there that are wider,
+    and are no header of it.
     """
     usual = rows[usual_row(len(rows))]
     numeric = [i for i, cell in enumerate(usual) if _is_number(cell, comma)]
@@ -115,7 +123,8 @@ def _titles(rows: Rows, comma: bool) -> int:
     if _known_units(rows[first - 1]) and first > 1 and len(rows[first - 2]) == len(rows[first - 1]):
         return first - 2
     fits = [len(row & filled) - len(row - filled) for row in above]
-    header = fits.index(max(fits))
+    words = [len(row) == len(usual) and not any(_is_number(cell, comma) for cell in row) for row in rows[:first]]
+    header = max(range(first), key=lambda i: (fits[i], words[i]))
     return header if 2 * fits[header] > len(filled) else len(above)
 
 
@@ -127,6 +136,18 @@ def names_of(preamble: Rows) -> list[str]:
     units = [spelled(cell.strip().strip("[]()")) for cell in last]
     has_units = len(above) == len(last) and 2 * sum(unit in UNITS for unit in units) > len(last)
     return _with_units(above, last) if has_units else list(last)
+
+
+def _without_settings(rows: Rows, comma: bool) -> Rows:
+    """Return a header with its table, without rows of settings between, which have words where the table has numbers.
+
+    Units and remarks below a header are few.
+    """
+    usual = rows[usual_row(len(rows))]
+    numeric = [i for i, cell in enumerate(usual) if _is_number(cell, comma)]
+    numbers = (i for i, row in enumerate(rows) if all(i < len(row) and _is_number(row[i], comma) for i in numeric))
+    first = next(numbers, 0)
+    return rows if first < SETTINGS or first > MOST_TITLES else [rows[0], *rows[first:]]
 
 
 def _in_table(row: Sequence[str], numeric: Sequence[int], width: int, comma: bool) -> bool:
@@ -177,6 +198,13 @@ def _with_strokes(header: Sequence[str]) -> list[str]:
     if not all(name and spelled(unit) in UNITS for name, stroke, unit in parted if stroke):
         return list(header)
     return [f"{name} [{unit}]" if stroke else name for name, stroke, unit in parted]
+
+
+def _dated(x: Array | None) -> Array | None:
+    """Return stamps of Windows, 100 ns since 1601, as seconds since 1970; no other column counts as far."""
+    if x is None or x.ndim > 1 or not FILETIMES[0] < np.nanmax(x, initial=0.0) < FILETIMES[1]:
+        return x
+    return 1e-7 * x - BEFORE_1970
 
 
 def _column(cells: Sequence[str], comma: bool) -> Array | None:
