@@ -129,7 +129,7 @@ def drafted(path: Path, tables: Tables, rate: float | None, guesses: list[str], 
     if not axes:
         raise MachineError(
             f"{path}: no column looks like a position",
-            value=", ".join(list(tables)[:LISTED]),
+            value=", ".join([n for n, x in tables.items() if len(x) == max(map(len, tables.values()))][:LISTED]),
             limit="names with position, pos, q, angle, encoder",
             remedy="give their names in order, an empty one for what is no signal: --names t,position,,effort; or "
             "write the description by hand (`column: c1`; `column: data, index: 1` of a matrix); a force sensor by "

@@ -357,6 +357,9 @@ def test_levels_tell_the_count_of_a_disc_of_few_lines(tmp_path):
 def test_a_refusal_lists_columns_in_the_order_in_which_names_are_given(tmp_path):
     with pytest.raises(MachineError, match=r"no column looks like a position; value t, zeta, beta"):
         written(tmp_path, "t,zeta,beta", TIME, TIME**2, np.cos(TIME))
+    np.savez(tmp_path / "a.npz", kind=np.ones(1), t=TIME, zeta=TIME**2)  # a name goes to columns of samples alone
+    with pytest.raises(MachineError, match=r"no column looks like a position; value t, zeta;"):
+        draft(tmp_path / "a.npz")
 
 
 def test_a_servo_on_a_bus_keeps_its_signs_in_a_bit_of_their_own(tmp_path):
