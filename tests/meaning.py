@@ -1,4 +1,4 @@
-"""What no verdict may say: a size that may be zero, an estimate outside its interval, a number of no known order."""
+"""What no verdict may say: a cause of no size, an estimate outside its own interval, a number of no known order."""
 
 from sher3_diagnosis.judge.meaning import SPAN
 from sher3_diagnosis.verdict import Verdict
@@ -25,8 +25,7 @@ def meaningless(verdict: Verdict) -> list[str]:
         wide = {n for n in sizes if told[n].low > 0.0 and told[n].high > SPAN * told[n].low}
         if sizes and sizes <= wide and any(told[n].means is None for n in sizes):
             out.append(f"{c.effect} of {c.actuator} tells numbers of no known order: {sorted(wide)}")
-        unstated = all(told[n].means is not None for n in sizes)
-        if (sizes and sizes <= zero and not unstated) or (TELLS.get(c.effect) in zero):
+        if (sizes and sizes <= zero) or (TELLS.get(c.effect) in zero):
             out.append(f"{c.effect} of {c.actuator} holds zero in {sorted(zero)}")
         if c.closure.value <= 0.0:
             out.append(f"{c.effect} of {c.actuator} closes {c.closure.value}")

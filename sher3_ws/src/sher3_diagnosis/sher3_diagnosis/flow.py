@@ -92,7 +92,7 @@ def find(machine: Machine[R, E], evidence: E, without: Collection[str], say: Say
     refined, causes = machine.refine(evidence, causes_of(evidence, attribution), attribution)
     remains = partial(left_over, significant, evidence)
     while machine.policy.swept:
-        fewer = without_empty(candidates, attribution, causes, machine.policy.carried)
+        fewer = without_empty(candidates, attribution, causes, remains, machine.policy.carried)
         fewer = significant_causes(evidence, attribution, remains) if fewer is attribution else fewer
         if fewer is attribution:
             break

@@ -8,10 +8,11 @@ from collections.abc import Iterable, Mapping, Sequence
 from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.effect import Effect
 from sher3_diagnosis.finding import Findings
+from sher3_diagnosis.report.odds import told
 from sher3_diagnosis.report.summary import shown_parameters, significant
 from sher3_diagnosis.reporter import EMPTY, Output, Table
 from sher3_diagnosis.verdict import Cause
-from sher3_diagnosis.words import place, quantity, range_text, words
+from sher3_diagnosis.words import place, words
 
 from sher3_chain.chain.reporter import ChainReporter
 from sher3_chain.manipulator.evidence import ArmMotionEvidence
@@ -96,9 +97,7 @@ def cell(cause: Cause, sets: Mapping[str, str]) -> str:
     text, shown = words(cause.effect), []
     for name in names:
         p, label = sizes[name], f"{name.replace('_', ' ')} " * (len(names) > 1)
-        interval = "" if p.low is None else f" ({range_text(p.low, p.high, p.unit)})"
-        open_size = "" if significant(p) else ", size not told"
-        shown.append(f"{label}{p.means or quantity(p.value, p.unit)}{interval}{open_size}")
+        shown.append(f"{label}{told(p)}{'' if significant(p) else ', size not told'}")
     text += f" {', '.join(shown)}" if shown else ""
     text += f" in {cause.condition}" if cause.condition else ""
     return text + (f" or {', '.join(words(r).lower() for r in cause.rivals)}" if cause.rivals else "")

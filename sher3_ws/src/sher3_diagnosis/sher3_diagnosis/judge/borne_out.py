@@ -22,11 +22,17 @@ def significant_causes(
     much: what the law of a larger cause leaves out.
     """
     for i in reversed([i for i in attribution.causes if insignificant(evidence, attribution, i)]):
-        if len(attribution.causes) > 1:
-            fewer = attribution.kept(evidence, [k for k in attribution.causes if k != i])
-            if set(left(fewer.fit)) <= set(left(attribution.fit)):
-                attribution = fewer
+        if len(attribution.causes) > 1 and (fewer := closed_without(evidence, attribution, i, left)) is not None:
+            attribution = fewer
     return attribution
+
+
+def closed_without(
+    evidence: Evidence, attribution: Attribution, index: int, left: Callable[[Fit], Collection[Channel]]
+) -> Attribution | None:
+    """Return the attribution without a cause; None where a gap opens then."""
+    fewer = attribution.kept(evidence, [k for k in attribution.causes if k != index])
+    return fewer if set(left(fewer.fit)) <= set(left(attribution.fit)) else None
 
 
 def insignificant(evidence: Evidence, attribution: Attribution, index: int) -> bool:

@@ -8,19 +8,19 @@ even if its gap is open then: a gap without a name is an answer, a wrong name is
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from sher3_diagnosis.attribute.candidates import Candidates
 from sher3_diagnosis.attribute.rivals import Attribution
-from sher3_diagnosis.attribute.together import law_error
-from sher3_diagnosis.channel import Array
+from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.fit.fitting import Fit, Term
+from sher3_diagnosis.judge.borne_out import closed_without
 from sher3_diagnosis.verdict import Cause, Parameter
-from sher3_diagnosis.words import place, range_text, words
+from sher3_diagnosis.words import place, quantity, range_text, words
 
 LOST = "lost_motion"
 """Family of which nothing is wider than the travel, and no gap negative unless its page says so."""
@@ -37,27 +37,32 @@ ALIKE = 1e-9
 
 
 def without_empty(
-    candidates: Candidates, attribution: Attribution, causes: Sequence[Cause], carried: bool = False
+    candidates: Candidates,
+    attribution: Attribution,
+    causes: Sequence[Cause],
+    left: Callable[[Fit], Collection[Channel]],
+    carried: bool = False,
 ) -> Attribution:
     """Return the attribution without the causes that say nothing, or the same where each says something.
 
     Of one place the cause that explains least goes first: what it leaves may give the others their size. One whose
-    size may be zero stays where it explains more than laws are off by: that it is there is told by what it closes
-    wherever it was not fitted, how large it is by its interval.
+    size may be zero stays where it explains most of what is told of its place, or a gap opens without it: that it is
+    there is told by what it closes wherever it was not fitted.
 
     Args:
         candidates: the evidence and the effects.
         attribution: of the evidence.
         causes: of the attribution, with their sizes.
+        left: the channels whose gap is left under a fit.
         carried: whether one whose size may be zero stays in the fit without a name.
     """
     evidence, found, empty = candidates.evidence, attribution.fit, dict[str, int]()
-    least = math.inf if carried else law_error(evidence, found, plain=False)
     sized = dict(zip(attribution.causes, causes, strict=True))
     small = {i for i, c in sized.items() if of_no_size(found.terms[i], found.of(i), c)}
     for i, cause in sized.items():
         worth = attribution.explained[i]
-        if (i in small and worth < least) or says_nothing(evidence, found, i, cause):
+        idle = i in small and (carried or not _borne_out(evidence, attribution, i, left))
+        if idle or says_nothing(evidence, found, i, cause):
             other = empty.setdefault(cause.actuator, i)
             empty[cause.actuator] = i if worth < attribution.explained[other] else other
     for i in empty.values():
@@ -68,6 +73,15 @@ def without_empty(
     for i in sorted(empty.values(), reverse=True):
         attribution = _simpler(candidates, attribution, i)
     return attribution
+
+
+def _borne_out(
+    evidence: Evidence, attribution: Attribution, index: int, left: Callable[[Fit], Collection[Channel]]
+) -> bool:
+    """Return whether a cause explains most of what is told of its place, or a gap opens without it."""
+    terms, worth = attribution.fit.terms, attribution.explained
+    beside = sum(worth[k] for k in attribution.causes if k != index and terms[k].site == terms[index].site)
+    return worth[index] >= beside or closed_without(evidence, attribution, index, left) is None
 
 
 def says_nothing(evidence: Evidence, found: Fit, index: int, cause: Cause) -> bool:
@@ -99,29 +113,35 @@ def _bounded(cause: Cause, names: Sequence[str]) -> list[Parameter]:
 def without_open_sizes(attribution: Attribution, causes: Sequence[Cause]) -> list[Cause]:
     """Return the causes of an attribution; sizes known to no factor of `SPAN` are told as unknown, with their interval.
 
-    So are those that may all be zero. The cause stays: that there is a lag may be certain where its time is not.
+    Of sizes that may all be zero the most is told alone. The cause stays: that there is a lag may be certain where its
+    time is not.
     """
     out = []
     for i, cause in zip(attribution.causes, causes, strict=True):
         term, coefficients = attribution.fit.terms[i], attribution.fit.of(i)
-        none, sizes = of_no_size(term, coefficients, cause), sizes_of(term, coefficients)
-        opened = {
-            n: p.model_copy(update={"means": OPEN})
-            for n, p in cause.parameters.items()
-            if n in sizes and (_open(p) or (none and _bounded(cause, [n])))
-        }
-        out.append(cause.model_copy(update={"parameters": {**cause.parameters, **opened}}))
+        sizes = sizes_of(term, coefficients)
+        told = {n: p.model_copy(update={"means": OPEN}) for n, p in cause.parameters.items() if n in sizes and _open(p)}
+        if of_no_size(term, coefficients, cause):
+            told |= {n: _at_most(p) for n, p in cause.parameters.items() if n in sizes and _bounded(cause, [n])}
+        out.append(cause.model_copy(update={"parameters": {**cause.parameters, **told}}))
     return out
+
+
+def _at_most(p: Parameter) -> Parameter:
+    """Return a size that may be zero without an interval, but with what it is at most."""
+    most = quantity(max(abs(p.low or 0.0), abs(p.high or 0.0)), p.unit)
+    return p.model_copy(update={"means": f"{OPEN}, at most {most}", "low": None, "high": None})
 
 
 def open_sizes(attribution: Attribution, causes: Sequence[Cause]) -> list[str]:
     """Say of each size that is told as unknown how far it is open, and what would tell it."""
     return [
-        f"{words(c.effect)} on {place(c.actuator)}: its {n.replace('_', ' ')} may be "
-        f"{range_text(p.low, p.high, p.unit)}; what would tell it: {attribution.fit.terms[i].effect.best.why}"
+        f"{words(c.effect)} on {place(c.actuator)}: its {n.replace('_', ' ')} is "
+        f"{p.means}{'' if p.low is None else f' ({range_text(p.low, p.high, p.unit)})'}; "
+        f"what would tell it: {attribution.fit.terms[i].effect.best.why}"
         for i, c in zip(attribution.causes, causes, strict=True)
         for n, p in c.parameters.items()
-        if p.means == OPEN
+        if (p.means or "").startswith(OPEN)
     ]
 
 

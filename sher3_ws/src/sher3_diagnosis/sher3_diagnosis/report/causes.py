@@ -82,6 +82,8 @@ def _interval(p: Parameter, choice: bool) -> str:
     """Return a parameter's interval, and whether it holds zero; of a choice that it is one."""
     if choice:
         return "a choice"
+    if p.means and p.low is None:
+        return ""
     return range_text(p.low, p.high, p.unit) + ("" if significant(p) else ", size not told")
 
 

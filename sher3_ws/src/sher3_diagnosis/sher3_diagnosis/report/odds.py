@@ -58,7 +58,7 @@ def sized(cause: Cause) -> str:
     return (
         name_of(cause)
         if first is None or first.unit == "1"
-        else f"{name_of(cause)}, {quantity(first.value, first.unit)}"
+        else f"{name_of(cause)}, {first.means or quantity(first.value, first.unit)}"
     )
 
 
@@ -83,6 +83,14 @@ def _in_percent(p: Parameter) -> Parameter:
 
 DECADES = 100.0
 """Largest over smallest size of an interval from which a value, known to a factor of ten at best, is not told."""
+
+
+def told(parameter: Parameter) -> str:
+    """Return a parameter in words, with its interval where it has one."""
+    value = parameter.means or quantity(parameter.value, parameter.unit)
+    if parameter.low is None:
+        return value
+    return f"{value} ({range_text(parameter.low, parameter.high, parameter.unit)})"
 
 
 def significant(parameter: Parameter) -> bool:
@@ -124,7 +132,7 @@ def answered(answer: Answer) -> str:
 def sizes(answer: Answer) -> str:
     """Return the parameters of an answer's causes with their intervals, those whose size is told."""
     return ", ".join(
-        f"{n.replace('_', ' ')} {p.means or quantity(p.value, p.unit)} ({range_text(p.low, p.high, p.unit)})"
+        f"{n.replace('_', ' ')} {told(p)}"
         for c in answer.causes
         for n, p in shown_parameters(c).items()
         if significant(p)

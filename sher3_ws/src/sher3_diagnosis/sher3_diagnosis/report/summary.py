@@ -6,11 +6,11 @@ from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 from typing import Any
 
-from sher3_diagnosis.report.odds import name_of, odds, significant, sized
+from sher3_diagnosis.report.odds import name_of, odds, significant, sized, told
 from sher3_diagnosis.report.odds import shown_parameters as shown_parameters
 from sher3_diagnosis.reporter import Reporter, Table
 from sher3_diagnosis.verdict import Cause, Interval, Noise, Verdict
-from sher3_diagnosis.words import listed, lower, place, quantity, range_text, ratio_text, share, words
+from sher3_diagnosis.words import listed, lower, place, quantity, ratio_text, share, words
 
 LEFT_OVER = 1.2
 """Rms that is left, over the floor, from which the headline says what it is. A convention of the words."""
@@ -86,8 +86,7 @@ def cause_text(cause: Cause) -> str:
     text = words(name_of(cause))
     known = list(shown_parameters(cause).items())
     for name, p in [(n, p) for n, p in known if significant(p)] or known[:1]:
-        text += f", {name.replace('_', ' ')} {p.means or quantity(p.value, p.unit)}"
-        text += "" if p.low is None else f" ({range_text(p.low, p.high, p.unit)})"
+        text += f", {name.replace('_', ' ')} {told(p)}"
     return text + (f" [or {', '.join(words(r).lower() for r in cause.rivals)}]" if cause.rivals else "")
 
 
