@@ -83,6 +83,11 @@ class CellView(Still):
         """(g,) place of the force between the least and the largest force."""
         return (self.applied - self.applied.min()) / float(np.ptp(self.applied))
 
+    @cached_property
+    def no_load(self) -> float:
+        """Place of no force in the range, 0 to 1; of forces of one sense its end nearest to none."""
+        return float(np.clip(-self.applied.min() / np.ptp(self.applied), 0.0, 1.0))
+
     def inputs(self, actuator: str) -> Array:
         """Return force, direction, warmth and order (g, 4)."""
         return np.column_stack([self.applied, self.unloading, self.warmth, self.elapsed])

@@ -13,7 +13,7 @@ from sher3_effects.table_view import CellView
 
 
 class ForceNonlinearity(Page):
-    """reading = force + a curve of second or third order that is zero at both ends of the range."""
+    """reading = force + a curve of second or third order: no scale between the ends of the range, no bias at no load."""
 
     id, family, stage = "force_nonlinearity", "scale", "sensing"
     kinds, places = ("cell",), ("load_cell",)
@@ -32,8 +32,9 @@ class ForceNonlinearity(Page):
         return [{"order": float(n)} for n in (2, 3) if forces > n + 1]
 
     def signature(self, view: CellView, site: str, shape: Shape) -> Signature:
-        """Return the curves up to an order, one at their largest."""
-        return Signature({Channel(self.stage, site): column(*curves(view.share)[: round(shape["order"]) - 1])})
+        """Return the curves up to an order, one at their largest, off what they are at no load."""
+        bent = [x - rest for x, rest in zip(curves(view.share), curves(view.no_load), strict=True)]
+        return Signature({Channel(self.stage, site): column(*bent[: round(shape["order"]) - 1])})
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
         """Return the largest deviation of curves (p,) from the line through both ends, with its sign, and the order."""
@@ -41,7 +42,7 @@ class ForceNonlinearity(Page):
         return {"largest": float(whole[np.argmax(np.abs(whole))]), "order": shape["order"]}
 
 
-def curves(share: Array) -> list[Array]:
+def curves(share: Array | float) -> list[Array]:
     """Return the curves of second and third order, (g,) each, one at their largest, over the place in the range."""
-    bow = share * (1.0 - share)
+    bow = np.asarray(share * (1.0 - share))
     return [4.0 * bow, 12.0 * np.sqrt(3.0) * bow * (0.5 - share)]

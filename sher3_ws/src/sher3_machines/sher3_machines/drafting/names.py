@@ -31,7 +31,7 @@ VELOCITY = vocabulary(
     "velocity velocities vel speed qd dq omega qdot qvel gyro drehzahl geschwindigkeit rate dot thetadot xdot "
     "velocidad velocidade vitesse velocità"
 )
-EFFORT = vocabulary("effort efforts torque torques tau taus tao force iq trq moment drehmoment strom kraft amps qfrc")
+EFFORT = vocabulary("effort efforts torque torques tau taus tao force iq trq moment drehmoment strom kraft amps qfrc f")
 CURRENT = vocabulary("current currents curr cur i corriente courant corrente")
 """A current is an effort, but the current position is the measured one."""
 COMMAND = vocabulary(
@@ -99,7 +99,7 @@ CAPITAL = re.compile(r"(?<=[a-z])(?=[A-Z][a-z]+$)")
 """Where the last word of a name begins with a capital: `wheelSpeedRpm`."""
 ENTRY = re.compile(r"[A-Za-z]{0,5}[ _]?\d{1,2}|[xyz]")
 """What brackets hold that is no unit but an entry: `POSITIONS (J1)`, `FORCE (x)`."""
-SHORT = vocabulary("x z i u n d q t")
+SHORT = vocabulary("x z i u n d q t f")
 """Words of one letter: beside a longer word for the quantity they are the name of the axis."""
 FORCEFUL = EFFORT | CURRENT | COMMAND | APPLIED
 """Words beside which a single letter at the end is a unit: `force_N`, `iq_A`, `u_V`; `enc_A` is the encoder of A."""

@@ -18,7 +18,7 @@ from sher3_machines.drafting.guesses import counts_rows, evenly, grows, swings_t
 from sher3_machines.drafting.names import bare_and_unit
 from sher3_machines.errors import MachineError
 from sher3_machines.intake.mending.motion import AGREES, FOLLOWS, speed_of, speed_ratio
-from sher3_machines.intake.spelling import bare
+from sher3_machines.intake.spelling import bare, table_of
 from sher3_machines.intake.tables import SAMPLES, Tables
 
 WITHOUT = re.compile(r"c\d+|")
@@ -39,6 +39,10 @@ AS_FAR = 1.25
 """Travel of one over that of the other from which a place is not told another one: a voltage, of a speed."""
 CIRCLE = 1e-2
 """Share of the square of a radius by which a point on a circle leaves it: a joint that is turned before a tracker."""
+BALANCED = 0.5
+"""Share of what a line over the place leaves of a force that slope, size and sense of the speed explain, at least."""
+SAME = 0.1
+"""Part by which a column differs from the slope of a speed up to which it is that slope."""
 TINY = 1e-300
 
 Place = tuple[str, int | None]
@@ -82,12 +86,23 @@ def _in_unit(name: str, column: str) -> str:
 def named_by_motion(tables: Tables, rate: float | None, guesses: list[str]) -> dict[Place, str]:
     """Return names for columns that have none: the time grows evenly, and a position is the integral of its speed.
 
-    Where no column is the speed of another, a position is what follows a reference later, or what swings to rest alone.
-    Empty where there is no time, or where the motion tells nothing.
+    Where no column is the speed of another, a position is what follows a reference later, or what swings to rest alone;
+    one more column beside a place and its speed that balances the motion is what drives. Each table of a folder is told
+    by itself. Empty where there is no time, or where the motion tells nothing.
     """
+    of_table: dict[str, Tables] = {}
+    for name, x in tables.items():
+        of_table.setdefault(table_of(name), {})[name] = x
+    told = {table: _told(own, rate, guesses) for table, own in of_table.items()}
+    return {p: f"{table}/{name}" if table else name for table, own in told.items() for p, name in own.items()}
+
+
+def _told(tables: Tables, rate: float | None, guesses: list[str]) -> dict[Place, str]:
+    """Return names for the columns of one table that have none."""
     clock, t, columns = _timed(tables, rate)
     moving = {p: x for p, x in columns.items() if np.isfinite(x).all() and float(np.ptp(x)) > 0.0}
     pairs = [(x, v) for x, v in permutations(moving, 2) if _is_speed(t, moving[x], moving[v])]
+    pairs.sort(key=lambda pair: _left(np.gradient(moving[pair[0]], t), moving[pair[1]])[0])  # before what it drives
     speeds = {v for _, v in pairs}
     found = [(x, v) for x, v in pairs if x not in speeds]
     followers = [] if found else [(x, r) for x, r in permutations(moving, 2) if _follows(moving[x], moving[r])]
@@ -102,9 +117,25 @@ def named_by_motion(tables: Tables, rate: float | None, guesses: list[str]) -> d
         named = {x: POSITION}
     else:
         return {}
-    rest = [_said(p) for p in moving if p not in named]
-    guesses.extend([f"not told by the motion: {', '.join(rest)}; name them: --names t,q,..."] if rest else [])
+    left = [p for p in moving if p not in named]
+    if found and len(left) == 1 and _drives(t, moving[x], moving[other], moving[left[0]]):
+        guesses.append(f"{_said(left[0])} is the effort, because it balances the motion; nobody named it")
+        named[left.pop()] = EFFORT
+    rest = ", ".join(map(_said, left))
+    guesses.extend([f"not told by the motion: {rest}; name them: --names t,q,..."] if rest else [])
     return {**({clock: "time"} if clock else {}), **named}
+
+
+def _drives(t: Array, x: Array, v: Array, force: Array) -> bool:
+    """Return whether a column (n,) balances inertia and friction of a place with its speed, and is not its slope."""
+    slope = np.gradient(v, t)
+    share, ratio = _left(slope, force)
+    if share < SAME and abs(ratio - 1.0) < SAME:
+        return False
+    weight, moved = np.column_stack([np.ones_like(x), x]), np.column_stack([slope, v, np.sign(v)])
+    about = force - weight @ np.linalg.lstsq(weight, force, rcond=None)[0]
+    both = np.column_stack([weight, moved])
+    return float(np.var(force - both @ np.linalg.lstsq(both, force, rcond=None)[0])) < (1.0 - BALANCED) * np.var(about)
 
 
 def _follows(x: Array, asked: Array) -> bool:
@@ -174,7 +205,7 @@ def _timed(tables: Tables, rate: float | None) -> tuple[Place | None, Array, dic
 
     Without a clock and a rate there are no columns.
     """
-    unnamed = [place for place in places_of(tables) if place[1] is not None or WITHOUT.fullmatch(place[0])]
+    unnamed = [place for place in places_of(tables) if place[1] is not None or WITHOUT.fullmatch(bare(place[0]))]
     columns = {place: values_at(place, tables) for place in unnamed}
     clocks = [p for p, x in columns.items() if grows(x) and evenly(x)] if rate is None else []
     clock = next((p for p in clocks if not counts_rows(columns[p])), clocks[0] if clocks else None)

@@ -31,6 +31,31 @@ def test_place_and_speed_are_told_by_the_motion_in_any_order(tmp_path, seed):
     assert f"not told by the motion: {column['torque']}" in found.text
 
 
+@pytest.mark.parametrize("seed", range(4))
+def test_what_balances_the_motion_is_the_effort_in_each_table_of_a_folder(tmp_path, seed):
+    draw = np.random.default_rng(seed)
+    for joint in ("hip", "knee"):
+        _, q, v, noise = swing(seed).T
+        force = draw.uniform(0.0, 0.3) * np.gradient(v) * 200.0 + draw.uniform(1.0, 5.0) * v + 3.0 * np.sin(q)
+        order = draw.permutation(3)
+        columns = np.column_stack([q, v, force + draw.uniform(0.5, 2.0) * np.sign(v) + 0.2 * noise])
+        np.savetxt(tmp_path / f"{joint}.csv", columns[:, order], delimiter=",")
+        np.savetxt(tmp_path / f"{joint}.order", order)
+    rate = float(1.0 / swing(seed)[1, 0])
+    for axis in parse_yaml(draft_of(tmp_path, rate=rate).text)["axes"]:
+        order = list(np.loadtxt(tmp_path / f"{axis['name']}.order"))
+        read = {k: axis["signals"][k]["column"] for k in ("position", "velocity", "effort")}
+        assert read == {k: f"{axis['name']}/c{order.index(i)}" for i, k in enumerate(read)}
+
+
+def test_a_file_for_each_signal_has_its_name(tmp_path):
+    t = np.arange(0.0, 10.0, 0.01)
+    for name, x in {"x": np.sin(t), "F": np.sign(np.cos(t))}.items():
+        np.save(tmp_path / f"{name}.npy", x)
+    signals = parse_yaml(draft_of(tmp_path, rate=100.0).text)["axes"][0]["signals"]
+    assert {k: signals[k]["column"] for k in signals} == {"position": "x/array", "effort": "F/array"}
+
+
 def test_a_matrix_is_a_table_too(tmp_path):
     savemat(tmp_path / "a.mat", {"data": swing(1), "J": 0.2})
     described = parse_yaml(draft_of(tmp_path / "a.mat").text)

@@ -71,14 +71,23 @@ def draft_cell(path: Path, tables: Tables) -> Draft | None:
     why = "its name says so" if said else "nobody states it"
     guesses.append(f"loads are {load!r}, in {applied.unit}, because {why}")
     x, y = _both(as_weight(applied) * applied.scale * tables[load], tables[read])
-    slope = float(f"{np.polyfit(y, x, 1)[0]:.6g}")
-    guesses.append(f"the reading is {read!r}; its `factor` is the slope of this table: state that of the data sheet")
+    reading = {"column": read, **_scaled(read, x, y, guesses)}
     guesses += unused(tables, found)
     measures = "torque" if str(applied.unit).endswith("N*m") else "force"
     data: dict[str, Any] = {"kind": "load_cell", "name": name_of(path), "measures": measures}
     data["applied"] = {"column": load, "unit": applied.unit}
-    data["reading"] = {"column": read, "unit": "1", "factor": slope, "override": True}
+    data["reading"] = reading
     return written(data, guesses)
+
+
+def _scaled(read: str, x: Array, y: Array, guesses: list[str]) -> dict[str, Any]:
+    """Return the unit of a reading (n,) of loads (n,): its own where its name states one of a load, else their slope."""
+    unit = _unit_of(read)
+    if unit in LOADS:
+        guesses.append(f"the reading is {read!r}, in {unit}, because its name says so")
+        return {"unit": unit}
+    guesses.append(f"the reading is {read!r}; its `factor` is the slope of this table: state that of the data sheet")
+    return {"unit": "1", "factor": float(f"{np.polyfit(y, x, 1)[0]:.6g}"), "override": True}
 
 
 def _unit_of(column: str) -> str | None:

@@ -4,6 +4,7 @@ import re
 
 import numpy as np
 import pytest
+from sher3_common import parse_yaml
 from sher3_diagnosis import diagnose
 from sher3_machines import MachineError, import_case, open_case
 from sher3_machines.drafting.drafts import draft_of
@@ -120,3 +121,12 @@ def test_of_loads_that_were_meant_and_laid_on_the_one_is_taken_that_the_reading_
     header = f"no,nominal_torque,mean_torque,{read}"
     found = drafted(tmp_path, header, np.arange(len(LEVELS)), LEVELS, laid, 1e-6 * (30.0 + laid))
     assert "loads are 'mean_torque', in N*m" in found.text and f"the reading is '{read}'" in found.text
+
+
+def test_a_reading_in_a_unit_of_a_load_keeps_it(tmp_path):
+    """What two cells read of one torque: the slope between them is the error that is looked for, and no factor."""
+    load = np.concatenate([np.linspace(-20.0, 20.0, 15), np.linspace(20.0, -20.0, 15)])
+    rows = np.column_stack([load, 0.9 * load + np.random.default_rng(0).normal(0.0, 0.02, 30)])
+    np.savetxt(tmp_path / "a.csv", rows, delimiter=",", header="reference torque [Nm],cell [Nm]", comments="")
+    reading = parse_yaml(draft_of(tmp_path / "a.csv").text)["reading"]
+    assert reading == {"column": "cell [Nm]", "unit": "N*m"}

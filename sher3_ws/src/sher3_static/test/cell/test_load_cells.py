@@ -87,3 +87,15 @@ def test_few_readings_are_refused_and_two_records_count_together():
     with pytest.raises(MachineError, match="too few readings; value 11; limit 12; record more"):
         found(up)
     assert found(up, down)[1] == {"force_bias": {"force": pytest.approx(2.0, abs=0.1)}}
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_the_zero_of_a_cell_is_what_it_reads_at_no_load(seed):
+    """A cell that is pulled and pushed, whose gain differs between the two, reads nothing where nothing hangs."""
+    draw = np.random.default_rng(seed)
+    ends = draw.uniform(300.0, 500.0), -draw.uniform(200.0, 400.0)
+    steps = [np.linspace(a, b, 12)[:-1] for a, b in ((0.0, ends[0]), (ends[0], ends[1]), (ends[1], 0.0))]
+    force = np.concatenate([*steps * 2, [0.0]])
+    reading = 0.97 * force + 6.0 * (force / 400.0) ** 2 + draw.normal(0.0, NOISE, len(force))
+    _, causes = found({"force": force, "mv": reading / 50.0})
+    assert set(causes) == {"force_scale", "force_nonlinearity"}
