@@ -13,7 +13,7 @@ from sher3_effects.table_view import CellView
 
 
 class ForceNonlinearity(Page):
-    """reading = force + a curve of second or third order: no scale between the ends of the range, no bias at no load."""
+    """reading = force + a curve of second or third order, alike at both ends of the range and zero at no load."""
 
     id, family, stage = "force_nonlinearity", "scale", "sensing"
     kinds, places = ("cell",), ("load_cell",)

@@ -135,7 +135,8 @@ def _drives(t: Array, x: Array, v: Array, force: Array) -> bool:
     weight, moved = np.column_stack([np.ones_like(x), x]), np.column_stack([slope, v, np.sign(v)])
     about = force - weight @ np.linalg.lstsq(weight, force, rcond=None)[0]
     both = np.column_stack([weight, moved])
-    return float(np.var(force - both @ np.linalg.lstsq(both, force, rcond=None)[0])) < (1.0 - BALANCED) * np.var(about)
+    left = force - both @ np.linalg.lstsq(both, force, rcond=None)[0]
+    return float(np.var(left)) < (1.0 - BALANCED) * float(np.var(about))
 
 
 def _follows(x: Array, asked: Array) -> bool:

@@ -141,6 +141,14 @@ def test_columns_of_which_nothing_is_told_are_refused_with_a_remedy(tmp_path):
         draft_of(tmp_path / "a.csv", rate=10.0)
 
 
+def test_what_parts_cells_at_the_end_of_a_line_makes_no_column(tmp_path):
+    lines = ["\t".join(f"{x:.6f}" for x in row) for row in swing(3)]
+    (tmp_path / "a.dat").write_text("\t\n".join([*lines, ""]))
+    with pytest.raises(MachineError, match="names do not fit") as refused:
+        draft_of(tmp_path / "a.dat", names=["q"])
+    assert "4 different ones" in str(refused.value)
+
+
 def test_a_short_table_of_readings_can_be_named(tmp_path):
     load = np.arange(1.0, 9.0)
     np.savetxt(

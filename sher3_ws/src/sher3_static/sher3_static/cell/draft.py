@@ -81,7 +81,7 @@ def draft_cell(path: Path, tables: Tables) -> Draft | None:
 
 
 def _scaled(read: str, x: Array, y: Array, guesses: list[str]) -> dict[str, Any]:
-    """Return the unit of a reading (n,) of loads (n,): its own where its name states one of a load, else their slope."""
+    """Return the unit of a reading (n,) of loads (n,): its own where its name states that of a load, else a slope."""
     unit = _unit_of(read)
     if unit in LOADS:
         guesses.append(f"the reading is {read!r}, in {unit}, because its name says so")

@@ -92,7 +92,7 @@ def _one_table(rows: Rows, comma: bool, names: Sequence[str]) -> dict[str, Array
     for i, name in enumerate(header):
         x = _dated(_column([row[i] if i < len(row) else "" for row in rows], comma))
         same = [known for known in out if known == name or known.startswith(f"{name}.")] if name in header[:i] else []
-        nothing = not name and x is not None and bool(np.isnan(x).all())  # cells that fill a row up
+        nothing = name in ("", f"c{i}") and x is not None and bool(np.isnan(x).all())  # cells that fill a row up
         if x is not None and not nothing and not any(np.array_equal(out[known], x, equal_nan=True) for known in same):
             out[f"{name}.{len(same) + 1}" if same else name] = x
     return out
