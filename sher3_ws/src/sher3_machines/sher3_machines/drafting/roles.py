@@ -50,6 +50,8 @@ MEMBERS = vocabulary("joint joints axis axes motor motors wheel wheels left righ
 """Words for a part of a machine that moves by itself."""
 TOGETHER = 0.999
 """Correlation of two places from which they are readings of one axis: play and springs leave some thousandths."""
+OF_INPUT = re.compile(r"(?<![A-Za-z])u(?![A-Za-z])")
+"""The letter of what drives, in whose place `y` stands for what comes out: `u_train`, `y_train`."""
 EVERY = "*"
 """Axis of a signal that all axes share: one speed is asked of both wheels."""
 
@@ -136,7 +138,7 @@ def with_output(placed: Mapping[Place, tuple[str, str]], tables: Tables) -> dict
     """Return the signals with a position, or a command, where no name says one.
 
     A controller beside its set-point reads `Input` and puts out `Output`, or `out`. A position is a column `y`, where
-    another column drives, `u`; else every column in a unit of a place.
+    another column drives, `u`, or `y_train` beside `u_train`; else every column in a unit of a place.
     """
     signals = {signal for signal, _ in placed.values()}
     plain = {bare(name).lower(): (name, None) for name, x in tables.items() if x.ndim == 1 and moves(x)}
@@ -148,6 +150,13 @@ def with_output(placed: Mapping[Place, tuple[str, str]], tables: Tables) -> dict
         return {**placed, plain["out"]: ("command", "")} if drives else dict(placed)
     if "command" in signals and "y" in tables:
         return {**placed, ("y", None): ("position", "")}
+    pairs = {
+        (OF_INPUT.sub("y", name), index): (name, axis)
+        for (name, index), (signal, axis) in placed.items()
+        if signal == "command" and OF_INPUT.search(bare(name))
+    }
+    if pairs and all(n in tables and tables[n].shape == tables[drive].shape for (n, _), (drive, _) in pairs.items()):
+        return {**placed, **{p: ("position", axis) for p, (_, axis) in pairs.items()}}
     others = {
         name: named(name) for name, x in tables.items() if x.ndim == 1 and (name, None) not in placed and moves(x)
     }

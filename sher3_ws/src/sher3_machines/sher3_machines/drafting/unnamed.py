@@ -87,8 +87,9 @@ def named_by_motion(tables: Tables, rate: float | None, guesses: list[str]) -> d
     """Return names for columns that have none: the time grows evenly, and a position is the integral of its speed.
 
     Where no column is the speed of another, a position is what follows a reference later, or what swings to rest alone;
-    one more column beside a place and its speed that balances the motion is what drives. Each table of a folder is told
-    by itself. Empty where there is no time, or where the motion tells nothing.
+    one more column beside a place and its speed that balances the motion is what drives. Several places with their
+    speeds are blocks of a robot's joints. Each table of a folder is told by itself. Empty where there is no time, or
+    where the motion tells nothing.
     """
     of_table: dict[str, Tables] = {}
     for name, x in tables.items():
@@ -105,6 +106,10 @@ def _told(tables: Tables, rate: float | None, guesses: list[str]) -> dict[Place,
     pairs.sort(key=lambda pair: _left(np.gradient(moving[pair[0]], t), moving[pair[1]])[0])  # before what it drives
     speeds = {v for _, v in pairs}
     found = [(x, v) for x, v in pairs if x not in speeds]
+    least = len({x for x, _ in found})  # joints that move
+    for joints in range(least, len(columns) // 2 + 1) if least > 1 else ():
+        if blocks := named_by_blocks(tables, rate, joints, guesses):
+            return blocks
     followers = [] if found else [(x, r) for x, r in permutations(moving, 2) if _follows(moving[x], moving[r])]
     if found or followers:
         (x, other), role = (found or followers)[0], VELOCITY if found else REFERENCE
@@ -173,7 +178,8 @@ def named_by_blocks(tables: Tables, rate: float | None, joints: int, guesses: li
         return {}
     blocks = [places[i : i + joints] for i in range(0, len(places), joints)]
     signals = [np.column_stack([columns[p] for p in block]) for block in blocks]
-    speed = {i: j for i, j in permutations(range(len(blocks)), 2) if _are_speeds(t, signals[i], signals[j])}
+    pairs = [(i, j) for i, j in permutations(range(len(blocks)), 2) if _are_speeds(t, signals[i], signals[j])]
+    speed = dict(sorted(pairs, key=lambda pair: _like(np.gradient(signals[pair[0]], t, axis=0), signals[pair[1]])))
     first = next((i for i in speed if i not in speed.values()), None)
     if first is None:
         return {}

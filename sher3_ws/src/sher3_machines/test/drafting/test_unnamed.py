@@ -48,6 +48,22 @@ def test_what_balances_the_motion_is_the_effort_in_each_table_of_a_folder(tmp_pa
         assert read == {k: f"{axis['name']}/c{order.index(i)}" for i, k in enumerate(read)}
 
 
+@pytest.mark.parametrize("joints", [2, 3, 6])
+def test_places_with_speeds_and_forces_of_several_joints_are_blocks_without_a_model(tmp_path, joints):
+    rows = min(len(swing(seed)) for seed in range(joints))
+    t = np.arange(rows) / 200.0
+    draw = np.random.default_rng(joints)
+    q = np.column_stack([np.sin(f * t + p) for f, p in draw.uniform(0.5, 6.0, (joints, 2))])
+    q[:, -1] = 0.4 if joints > 2 else q[:, -1]  # held
+    v = np.gradient(q, t, axis=0)
+    force = v + 0.5 * np.sign(v) + np.sin(q) + draw.normal(0.0, 0.1, q.shape)
+    np.savetxt(tmp_path / "robot.csv", np.column_stack([t, q, v, force]), delimiter=",")
+    for axis in parse_yaml(draft_of(tmp_path / "robot.csv").text)["axes"]:
+        first = int(axis["name"].removeprefix("joint"))
+        read = {k: axis["signals"][k]["column"] for k in ("position", "velocity", "effort")}
+        assert read == {k: f"c{first + i * joints}" for i, k in enumerate(read)}
+
+
 def test_a_file_for_each_signal_has_its_name(tmp_path):
     t = np.arange(0.0, 10.0, 0.01)
     for name, x in {"x": np.sin(t), "F": np.sign(np.cos(t))}.items():
@@ -168,3 +184,14 @@ def test_a_point_on_a_circle_is_no_place_and_its_speed(tmp_path, centre):
     np.savetxt(tmp_path / "a.csv", rows, delimiter=",")
     with pytest.raises(MachineError, match="looks like a position"):
         draft_of(tmp_path / "a.csv")
+
+
+def test_u_and_y_of_one_part_of_a_record_are_what_drives_and_what_comes_out(tmp_path):
+    t, q = swing(0)[:, 0], np.column_stack([swing(0)[:, 1], swing(0)[:, 2]])
+    parts = {"train": slice(None), "test": slice(200)}
+    arrays = {f"{k}_{n}": x[s].T for n, s in parts.items() for k, x in (("u", np.sign(q)), ("y", q))}
+    savemat(tmp_path / "a.mat", arrays | {f"time_{n}": t[s][None] for n, s in parts.items()})
+    axes = parse_yaml(draft_of(tmp_path / "a.mat").text)["axes"]
+    assert [[axis["signals"][k]["column"] for k in ("position", "command")] for axis in axes] == [
+        ["y_train", "u_train"]
+    ] * 2
