@@ -106,6 +106,10 @@ def _told(tables: Tables, rate: float | None, guesses: list[str]) -> dict[Place,
     pairs.sort(key=lambda pair: _left(np.gradient(moving[pair[0]], t), moving[pair[1]])[0])  # before what it drives
     speeds = {v for _, v in pairs}
     found = [(x, v) for x, v in pairs if x not in speeds]
+    places = dict.fromkeys(x for x, _ in found)
+    asked = [r for r in places if any(_follows(moving[x], moving[r]) for x in places if x is not r)]
+    asked = asked if 2 * len(asked) == len(places) else []  # each place has its own
+    found = [(x, v) for x, v in found if x not in asked]
     least = len({x for x, _ in found})  # joints that move
     for joints in range(least, len(columns) // 2 + 1) if least > 1 else ():
         if blocks := named_by_blocks(tables, rate, joints, guesses):
@@ -115,7 +119,7 @@ def _told(tables: Tables, rate: float | None, guesses: list[str]) -> dict[Place,
         (x, other), role = (found or followers)[0], VELOCITY if found else REFERENCE
         why = "its speed" if found else "what it follows"
         guesses.append(f"{_said(x)} is a position, because {_said(other)} is {why}; nobody named them")
-        named = {x: POSITION, other: role}
+        named = {x: POSITION, other: role} | ({asked[0]: REFERENCE} if len(asked) == 1 else {})
     elif len(moving) == 1 and swings_to_rest(*moving.values()):
         (x,) = moving
         guesses.append(f"{_said(x)} is a position, because it swings to rest and nothing else moves; nobody named it")

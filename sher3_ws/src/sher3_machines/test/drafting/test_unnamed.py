@@ -103,6 +103,22 @@ def test_a_place_is_what_follows_another_column_late_and_as_far(tmp_path, seed):
         draft_of(tmp_path / "b.csv")
 
 
+@pytest.mark.parametrize("order", [(0, 1, 2, 3, 4), (0, 2, 1, 4, 3), (0, 1, 3, 2, 4)])
+def test_a_place_its_reference_and_their_speeds_are_one_axis_and_no_two_joints(tmp_path, order):
+    t = np.arange(0.0, 20.0, 0.005)
+    asked, lag = np.sin(2.0 * t + 0.1 * t**2), 0.05
+    place = np.interp(t - lag, t, asked) + np.random.default_rng(0).normal(0.0, 1e-4, len(t))
+    rows = np.column_stack([t, place, asked, np.gradient(place, t), np.gradient(asked, t)])
+    np.savetxt(tmp_path / "a.csv", rows[:, order], delimiter=",")
+    (axis,) = parse_yaml(draft_of(tmp_path / "a.csv").text)["axes"]
+    read = {k: axis["signals"][k]["column"] for k in ("position", "velocity", "reference")}
+    assert read == {
+        "position": f"c{order.index(1)}",
+        "velocity": f"c{order.index(3)}",
+        "reference": f"c{order.index(2)}",
+    }
+
+
 def test_a_number_of_the_sample_is_no_time_beside_one(tmp_path):
     found = followed(0)
     np.savetxt(tmp_path / "a.csv", np.column_stack([np.arange(len(found)), found]), delimiter=",")
