@@ -22,3 +22,12 @@ def test_the_last_turn_is_late_enough_on_any_computer(monkeypatch, turn, last):
     with pytest.raises(StartError, match="nobody answers; limit 5 s"):
         fault_node.wait_for(executor, lambda: False, "nobody answers")
     assert past[0] == pytest.approx(last, abs=1)
+
+
+def test_a_request_is_sent_at_once_and_each_second_until_it_is_answered(monkeypatch):
+    past, sent = [0.0], []
+    monkeypatch.setattr(fault_node, "time", SimpleNamespace(monotonic=lambda: past[0]))
+    asked = fault_node.repeated(lambda: sent.append(past[0]), lambda: past[0] >= 2.5)
+    while not asked():
+        past[0] += 0.25
+    assert sent == [0.0, 1.0, 2.0]

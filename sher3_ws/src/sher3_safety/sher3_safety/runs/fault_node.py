@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import rclpy
@@ -20,6 +22,9 @@ from sher3_runtime.ports import NODE_OPTIONS, advertise, ports, subscribe
 
 PATIENCE, TURN = 5.0, 0.02
 """Longest wait on an idle computer for the robot, and for its answer; and for one turn of the executor [s]."""
+AGAIN = 1.0
+"""Seconds after which a request without an answer is sent again: the plant may take it before it has found whom to
+answer. Taken twice it is the same fault, which begins anew."""
 ANSWER = "plant: faults"
 
 
@@ -45,8 +50,8 @@ def inject(request: FaultRequest, domain: int) -> str:
         publish = advertise(node, "mock/fault")
         executor = make_executor([node])
         wait_for(executor, lambda: _met(node), f"no robot on mocks runs on domain {domain}; hardware takes no faults")
-        publish(TextSample(request.to_json()))
-        wait_for(executor, lambda: bool(heard), "the plant does not answer")
+        ask = repeated(partial(publish, TextSample(request.to_json())), lambda: bool(heard))
+        wait_for(executor, ask, "the plant does not answer")
         executor.shutdown()
     finally:
         node.destroy_node()
@@ -54,6 +59,22 @@ def inject(request: FaultRequest, domain: int) -> str:
     if "refused" in heard[0].message:
         raise NotInjected(heard[0].message)
     return heard[0].message
+
+
+def repeated(send: Callable[[], None], answered: Callable[[], bool]) -> Callable[[], bool]:
+    """Return a condition that sends at once, and again every `AGAIN` seconds, until it is answered."""
+    due = -math.inf
+
+    def asked() -> bool:
+        nonlocal due
+        if answered():
+            return True
+        if time.monotonic() >= due:
+            due = time.monotonic() + AGAIN
+            send()
+        return False
+
+    return asked
 
 
 def _met(node: Node) -> bool:
