@@ -64,7 +64,7 @@ class Policy:
         own_level: in the odds the machine itself tells how far it is from its pages; otherwise it is as far as the
             robots that set the weights.
         carried: an effect whose size may be zero stays in the fit without a name. For machines of which every part has
-            a small error of its own; otherwise it has a name where it explains more than laws are off by.
+            a small error of its own; otherwise it has a name where its gap needs it.
         absences: a place without a gap says from which size on each plain law would have shown. For machines on which
             such sizes were measured to be seen.
     """

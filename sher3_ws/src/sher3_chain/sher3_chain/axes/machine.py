@@ -192,11 +192,10 @@ def held_axes(runs: Sequence[AxesRun], axes: Sequence[Axis]) -> dict[str, str]:
     answer: both follow laws that are none of the axis.
     """
     travels = [max(float(np.ptp(run.signals[a.name].get("position", [0.0]))) for run in runs) for a in axes]
-    why = (
-        "it is held while others move far, and its force answers them; describe an arm as `kind: manipulator`, or take"
-    )
+    why = "it is held while others move far, and its force answers them"
+    remedy = "describe an arm as `kind: manipulator`, or take out what it is no part of"
     return {
-        axis.name: f"axis {axis.name}: moves by {travel:.2g} {axis.unit_of_position}: {why} out what it is no part of"
+        axis.name: f"axis {axis.name}: moves by {travel:.2g} {axis.unit_of_position}: {why}; {remedy}"
         for axis, travel, held in zip(axes, travels, held_beside(travels, [a.motion for a in axes]), strict=True)
         if held and axis.driven and not axis.servo
     }

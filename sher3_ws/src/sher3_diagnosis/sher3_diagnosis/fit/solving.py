@@ -1,6 +1,7 @@
 """Small normal equations, many at once: scaled, with a tiny ridge, and with coefficients that stay within limits.
 
-Compiled, since a search solves a hundred thousand systems of one to ten numbers: of 0.4 ms in NumPy 0.02 are left.
+Compiled, since a search solves a hundred thousand: five coefficients of eight runs with each left out take 8 us, in
+NumPy they took 34.
 """
 
 from __future__ import annotations
@@ -58,10 +59,7 @@ def leave_one_out(normal: Array, right: Array, limit: Array) -> tuple[Array, Arr
     """
     runs, p = right.shape
     own, rest = np.flatnonzero(np.isfinite(limit)), np.flatnonzero(~np.isfinite(limit))
-    total, whole = np.zeros((p, p)), np.zeros(p)
-    for r in range(runs):
-        total += normal[r]
-        whole += right[r]
+    total, whole = normal.sum(axis=0), right.sum(axis=0)
     prior = total.copy()
     for i in own:
         prior[i, i] += 1.0
@@ -111,8 +109,8 @@ def _all_within(normal: Array, right: Array, limit: Array) -> Array:
 def _within(normal: Array, right: Array, limit: Array, out: Array) -> None:
     """Write the coefficients (p,) within their limits into `out`."""
     p = len(right)
-    held, stiff, pulled = np.zeros(p), normal, right
-    _scaled(stiff, pulled, out)
+    held = np.zeros(p)
+    _scaled(normal, right, out)
     for _ in range(ROUNDS):
         any_beyond = False
         for i in range(p):

@@ -4,18 +4,12 @@ much.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection
-
 from sher3_diagnosis.attribute.rivals import Attribution
-from sher3_diagnosis.attribute.together import is_plain, law_error
-from sher3_diagnosis.channel import Channel
+from sher3_diagnosis.attribute.together import Left, is_plain, law_error
 from sher3_diagnosis.evidence import Evidence
-from sher3_diagnosis.fit.fitting import Fit
 
 
-def significant_causes(
-    evidence: Evidence, attribution: Attribution, left: Callable[[Fit], Collection[Channel]]
-) -> Attribution:
+def significant_causes(evidence: Evidence, attribution: Attribution, left: Left) -> Attribution:
     """Return the attribution without insignificant causes, where their gap stays closed without them.
 
     Such a cause is worth next to nothing, and an effect of another family, where nobody can tell which, is worth as
@@ -27,9 +21,7 @@ def significant_causes(
     return attribution
 
 
-def closed_without(
-    evidence: Evidence, attribution: Attribution, index: int, left: Callable[[Fit], Collection[Channel]]
-) -> Attribution | None:
+def closed_without(evidence: Evidence, attribution: Attribution, index: int, left: Left) -> Attribution | None:
     """Return the attribution without a cause; None where a gap opens then."""
     fewer = attribution.kept(evidence, [k for k in attribution.causes if k != index])
     return fewer if set(left(fewer.fit)) <= set(left(attribution.fit)) else None

@@ -8,14 +8,15 @@ even if its gap is open then: a gap without a name is an answer, a wrong name is
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from sher3_diagnosis.attribute.candidates import Candidates
 from sher3_diagnosis.attribute.rivals import Attribution
-from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.attribute.together import Left
+from sher3_diagnosis.channel import Array
 from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.fit.fitting import Fit, Term
 from sher3_diagnosis.judge.borne_out import closed_without
@@ -40,7 +41,7 @@ def without_empty(
     candidates: Candidates,
     attribution: Attribution,
     causes: Sequence[Cause],
-    left: Callable[[Fit], Collection[Channel]],
+    left: Left,
     carried: bool = False,
 ) -> Attribution:
     """Return the attribution without the causes that say nothing, or the same where each says something.
@@ -53,7 +54,7 @@ def without_empty(
         candidates: the evidence and the effects.
         attribution: of the evidence.
         causes: of the attribution, with their sizes.
-        left: the channels whose gap is left under a fit.
+        left: says which gaps are left under a fit.
         carried: whether one whose size may be zero stays in the fit without a name.
     """
     evidence, found, empty = candidates.evidence, attribution.fit, dict[str, int]()
@@ -75,9 +76,7 @@ def without_empty(
     return attribution
 
 
-def _borne_out(
-    evidence: Evidence, attribution: Attribution, index: int, left: Callable[[Fit], Collection[Channel]]
-) -> bool:
+def _borne_out(evidence: Evidence, attribution: Attribution, index: int, left: Left) -> bool:
     """Return whether a cause explains most of what is told of its place, or a gap opens without it."""
     terms, worth = attribution.fit.terms, attribution.explained
     beside = sum(worth[k] for k in attribution.causes if k != index and terms[k].site == terms[index].site)
