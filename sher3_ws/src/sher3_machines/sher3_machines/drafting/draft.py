@@ -117,14 +117,15 @@ def drafted(path: Path, tables: Tables, rate: float | None, guesses: list[str], 
     known = {name for name, _ in roles}
     left += [n for n, x in tables.items() if n not in known and n != clock and moves(x)]
     reached: dict[object, float] = {}
-    for place in (signals["position"] for signals in groups.values()):
-        reached[_spelt(place)] = max(reached.get(_spelt(place), 0.0), reach(values_of(place, tables)))
-    axes = [
-        _axis(axis, signals, tables, period, reached[_spelt(signals["position"])], guesses)
-        for axis, signals in groups.items()
-    ]
-    for axis, signals in zip(axes, groups.values(), strict=True):
-        _let_go(axis, values_of(signals["position"], tables), guesses, alone=len(axes) == 1)
+    spelt = {axis: _spelt(signals["position"], axis) for axis, signals in groups.items()}
+    for axis, signals in groups.items():
+        farthest = reach(values_of(signals["position"], tables))
+        reached[spelt[axis]] = max(reached.get(spelt[axis], 0.0), farthest)
+    axes = [_axis(axis, signals, tables, period, reached[spelt[axis]], guesses) for axis, signals in groups.items()]
+    homes = {place for signals in groups.values() for place in signals.values()}
+    astray = any(signal in ("command", "effort") and place not in homes for place, (signal, _) in roles.items())
+    for drafted_axis, signals in () if astray else zip(axes, groups.values(), strict=True):
+        _let_go(drafted_axis, values_of(signals["position"], tables), guesses, alone=len(axes) == 1)
     checked_by_speed(time, axes, tables, None if clock is None else tables[clock], guesses)
     if not axes:
         raise MachineError(
@@ -142,19 +143,19 @@ def drafted(path: Path, tables: Tables, rate: float | None, guesses: list[str], 
     return {"kind": "axes", "name": name_of(path.resolve()), "time": time, "axes": axes}
 
 
-def _spelt(place: Place) -> object:
+def _spelt(place: Place, axis: str) -> object:
     """Return what places in one unit share: a table, the words of the name but the axis', and whether it slides."""
     name = place[0]
-    return table_of(name), frozenset(words_of(bare(name))) - set(named(name).axis.split("_")), _slides(place)
+    words = frozenset(words_of(bare(name))) - set(named(name).axis.split("_")) - set(axis.split("_"))
+    return table_of(name), words, _slides(axis)
 
 
-def _slides(place: Place) -> bool:
-    """Return whether the name of a place says that its axis slides; `y` beside `u` is no direction."""
-    what = named(place[0])
-    return what.signal is not None and bool(set(what.axis.split("_")) & SLIDING_AXES)
+def _slides(axis: str) -> bool:
+    """Return whether the name of an axis says that it slides."""
+    return bool(set(axis.split("_")) & SLIDING_AXES)
 
 
-def _unit_of(place: Place, x: Array, reached: float) -> tuple[str, float, str]:
+def _unit_of(place: Place, axis: str, x: Array, reached: float) -> tuple[str, float, str]:
     """Return the unit of a place, its factor, and why; of a velocity that stands for one, the unit of it.
 
     `reached` is the largest value of all places that are spelt alike.
@@ -163,9 +164,9 @@ def _unit_of(place: Place, x: Array, reached: float) -> tuple[str, float, str]:
     if what.signal == "velocity":
         return (what.unit, 1.0, NAMED) if what.unit in VELOCITIES else ("rad/s", 1.0, "it is a velocity")
     if what.unit is None and JOINT_STATES in place[0]:
-        return ("m" if _slides(place) else "rad"), 1.0, OF_ROS
+        return ("m" if _slides(axis) else "rad"), 1.0, OF_ROS
     counted = what.unit is None and bool((x == np.round(x)).all()) and bool(set(words_of(bare(place[0]))) & COUNTING)
-    return position_unit("count" if counted else what.unit, x, _slides(place), reached)
+    return position_unit("count" if counted else what.unit, x, _slides(axis), reached)
 
 
 def by_motion(label: str, signals: Mapping[str, Place], tables: Tables, guesses: list[str]) -> Mapping[str, Place]:
@@ -204,7 +205,7 @@ def _axis(
     label = f"joint{label}" if label[0].isdigit() else label
     signals = by_motion(label, signals, tables, guesses)
     x = values_of(signals["position"], tables)
-    unit, factor, why = _unit_of(signals["position"], x, reached)
+    unit, factor, why = _unit_of(signals["position"], axis, x, reached)
     guesses.append(f"{label}: position in {unit}, because {why}")
     columns: dict[str, Any] = {}
     for signal in SIGNALS:
@@ -245,11 +246,12 @@ def _axis(
 
 
 def _let_go(axis: dict[str, Any], x: Array, guesses: list[str], alone: bool) -> None:
-    """Give a body of which only the place (n,) was recorded, and which comes to rest, a mass of one.
+    """Give a body of which only the place (n,) was recorded, and which swings to rest, a mass of one.
 
-    Beside other axes it is one that swings to rest: what is moved point by point comes to rest as well.
+    What is moved from one point to another one comes to rest as well; a speed that dies out alone was let go.
     """
-    if axis["command_law"]["kind"] == "none" and (comes_to_rest(x) if alone else swings_to_rest(x)):
+    slows = alone and axis["signals"]["position"]["unit"] in VELOCITIES and comes_to_rest(x)
+    if axis["command_law"]["kind"] == "none" and (slows or swings_to_rest(x)):
         axis["mass"] = 1.0
         guesses.append(
             f"{axis['name']}: let go, because it comes to rest; its mass of 1 is a placeholder: forces are for each kg "

@@ -53,6 +53,8 @@ GROWING = 0.98
 """Share of the steps of a clock that do not run backwards: logs that were cut together have a few that do."""
 EVEN = 0.05
 """Spread of the steps over their mean up to which a column without a telling name is taken for a clock."""
+BEGUN_AGAIN = 4
+"""Parts of a log, in the mean over its longest one, below which it was begun again."""
 LATE, FORWARD = 0.5, 0.95
 """Share of a step by which a clock that pauses may be late, and the share of its steps that are not."""
 
@@ -115,8 +117,17 @@ def swings_to_rest(x: Array) -> bool:
 def grows(x: Array) -> bool:
     """Return whether a column (n,) runs forward but for a few steps."""
     known = x[np.isfinite(x)]
-    steps = np.diff(known)
-    return len(steps) > 1 and float(np.mean(steps >= 0.0)) > GROWING and bool(np.median(known) > known[0])
+    steps, once = np.diff(known), np.diff(_unbroken(known))
+    return len(once) > 1 and float(np.mean(steps >= 0.0)) > GROWING and bool(np.median(once.cumsum()) > 0.0)
+
+
+def _unbroken(x: Array) -> Array:
+    """Return the longest part of a column (n,) in which it does not jump back, of a log that was begun again.
+
+    What jumps back more often is an angle that turns.
+    """
+    longest = max(np.split(x, np.flatnonzero(np.diff(x) < 0.0) + 1), key=len)
+    return longest if BEGUN_AGAIN * len(longest) > len(x) else x
 
 
 def counts_rows(x: Array) -> bool:
@@ -126,7 +137,7 @@ def counts_rows(x: Array) -> bool:
 
 def evenly(x: Array) -> bool:
     """Return whether the steps of a column (n,) are even, or are so but for a few pauses and never run back."""
-    steps = np.diff(x[np.isfinite(x)])
+    steps = np.diff(_unbroken(x[np.isfinite(x)]))
     if np.std(steps) < EVEN * np.mean(steps):
         return True
     if not (steps > 0.0).all():

@@ -37,20 +37,26 @@ CURRENT = vocabulary("current currents curr cur i corriente courant corrente")
 COMMAND = vocabulary(
     "control ctrl u input eingang voltage volt voltaje spannung pwm duty vir valve ventil esforço esforco"
 )
+CONTROLLERS, OUTPUTS = vocabulary("pid pi controller regler"), vocabulary("output out")
+"""Words for a controller and for what comes out of it, which is what drives."""
 ASKED = vocabulary(
     "ref reference set setpoint sp desired des target tgt goal soll demand commanded cmd command action qg d "
-    "planned cmptd computed referência referencia consigna"
+    "planned cmptd computed rsol referência referencia consigna envoyé envoyée envoyee"
 )
-MEASURED = vocabulary("actual act measured meas present est estimate estimated ist feedback fb")
+MEASURED = vocabulary(
+    "actual act measured meas present est estimate estimated ist rist feedback fb response antwort respuesta resposta "
+    "réel réelle reel reelle mesuré mesurée medido medida misurato"
+)
 SECOND = vocabulary(
     "load output link ql thetal second secondary se scale abtrieb maßstab massstab glasmaßstab glasmassstab tracker "
     "laser interferometer vicon mocap optitrack qualisys gt truth groundtruth"
 )
 IGNORED = vocabulary(
     "acceleration acc accel qdd ddq qddot ddot thetaddot xddot error err erro bus supply battery versorgung power "
-    "leistung energy tcp pose cartesian ee eef execution main frequency freq frequenz"
+    "leistung energy tcp pose cartesian ee eef execution main frequency freq frequenz accelerometer "
+    "momentum deviation ratio"
 )
-"""What is no signal of an axis: derivatives, supplies, frequencies, and what the hand of an arm does."""
+"""What is no signal of an axis: derivatives, momenta, supplies, frequencies, and what the hand of an arm does."""
 TEMPERATURE = vocabulary("temperature temperatures temp temps temperatur")
 APPLIED = vocabulary("hung applied external disturbance weight brake bremsmoment last")
 """A force from outside that is known, where the column has the unit of one."""
@@ -66,6 +72,8 @@ PLAIN = vocabulary(
 )
 PLAIN |= DERIVED | MODELLED
 """Words that tell one axis from another only where nothing else does."""
+PARTS = vocabulary("joint joints axis axes servo j gelenk achse junta articulación articulacion")
+"""Words for a part of a machine whose place is meant where nothing says what was read: `joint1`, `J2`."""
 TURNING = vocabulary("az azimuth el elevation pan tilt yaw pitch roll")
 """Names of axes that, with a unit of an angle, are a position."""
 TIME = vocabulary(
@@ -99,10 +107,14 @@ CAPITAL = re.compile(r"(?<=[a-z])(?=[A-Z][a-z]+$)")
 """Where the last word of a name begins with a capital: `wheelSpeedRpm`."""
 ENTRY = re.compile(r"[A-Za-z]{0,5}[ _]?\d{1,2}|[xyz]")
 """What brackets hold that is no unit but an entry: `POSITIONS (J1)`, `FORCE (x)`."""
+DIRECTIONS = vocabulary("x z")
+"""Words for a place that name an axis, beside one for who asks or measures."""
 SHORT = vocabulary("x z i u n d q t f")
 """Words of one letter: beside a longer word for the quantity they are the name of the axis."""
 FORCEFUL = EFFORT | CURRENT | COMMAND | APPLIED
 """Words beside which a single letter at the end is a unit: `force_N`, `iq_A`, `u_V`; `enc_A` is the encoder of A."""
+NUMBERED = re.compile(r"\w*\d+: *(?=[A-Za-z])")
+"""What numbers a column before its name: `obs_13: joint_pos`."""
 SIDES = re.compile(r"(?i)(?<![a-z])(q|theta)_(?=[ml](?![a-z0-9]))")
 """A place of the motor or of the link, as textbooks of elastic joints write them: `q_m`, `theta_l`."""
 PULSES = vocabulary("pwm pulse pulses pulsewidth width servo")
@@ -135,6 +147,7 @@ class Named:
 def named(column: str) -> Named:
     """Return what the name of a column says, with the tables it lies in."""
     *tables, last = PARTING.split(column)
+    last = NUMBERED.sub("", last)
     known, unit = bare_and_unit(last)
     words = words_of(known)
     if tables and words and set(words) <= READING:  # a channel of a control system: its table has the name
@@ -148,8 +161,8 @@ def named(column: str) -> Named:
     table = words_of(tables[-1]) if tables else []
     long = [w for w in words if w not in SHORT and w in WORDS - MEASURED - ASKED]
     used = [w for w in words if w in WORDS and not (long and w in SHORT and w != "d")]
-    rest = [w for w in words if w not in used and w not in SECOND and w not in PLAIN]
-    rest = rest or (["x"] if "x" in used and (len(used) > 1 or set(words) & SECOND) else [])
+    rest = [w for w in words if w not in used and w not in SECOND | PLAIN | CONTROLLERS | OUTPUTS]
+    rest = rest or [w for w in used if w in DIRECTIONS and (len(used) > 1 or set(words) & SECOND)]
     if unit in FORCES and set(words) & APPLIED:
         return Named("applied", "_".join(w for w in rest if w not in APPLIED), unit)
     if unit in FORCES and set(words) & SECOND and not set(words) & POSITION:
@@ -158,7 +171,8 @@ def named(column: str) -> Named:
         return Named("reference", "_".join(w for w in rest if w not in PULSES), unit)
     if unit == "degC" or set(words) & TEMPERATURE:
         return Named("temperature", "_".join(w for w in rest if w not in TEMPERATURE), unit or "degC")
-    signal = _signal(set(used) | (set(words) & SECOND), {w for w in table if w in ASKED | COMMAND})
+    told = set(used) | (set(words) & (SECOND | CONTROLLERS | OUTPUTS))
+    signal = _signal(told, {w for w in table if w in ASKED | COMMAND})
     if signal in ("position", "load") and unit in PLACELESS:
         signal = "effort" if unit in FORCES else None  # a bridge in mV, no place
     if signal == "position" and unit in VELOCITIES:
@@ -181,6 +195,8 @@ def _signal(words: set[str], above: set[str]) -> str | None:
     place = bool(words & POSITION)
     if words & IGNORED:
         return None
+    if words & CONTROLLERS and words & OUTPUTS:
+        return "command"
     if words & VELOCITY:
         return ASKED_SPEED if asked else "velocity"
     if words & EFFORT or (words & CURRENT and not place):

@@ -10,18 +10,22 @@ from typing import Any
 import numpy as np
 from sher3_diagnosis.channel import Array
 
+from sher3_machines.drafting.guesses import evenly, grows
 from sher3_machines.drafting.names import (
     APPLIED,
     ASKED,
     ASKED_SPEED,
     DERIVED,
+    DIRECTIONS,
     DRIVING,
     FORCES,
     IGNORED,
     MEASURED,
     MODELLED,
+    PARTS,
     PLACES,
     POSITION,
+    TURNING,
     VELOCITY,
     counts_samples,
     named,
@@ -52,6 +56,8 @@ TOGETHER = 0.999
 """Correlation of two places from which they are readings of one axis: play and springs leave some thousandths."""
 OF_INPUT = re.compile(r"(?<![A-Za-z])u(?![A-Za-z])")
 """The letter of what drives, in whose place `y` stands for what comes out: `u_train`, `y_train`."""
+ALONG_X = re.compile(r"(?<![A-Za-z])[xX](?![A-Za-z])")
+"""The letter of a place beside one along `y`: `tip_x`, `tip_y`."""
 EVERY = "*"
 """Axis of a signal that all axes share: one speed is asked of both wheels."""
 
@@ -111,7 +117,29 @@ def _named(tables: Tables, clock: str | None) -> dict[Place, tuple[str, str]]:
             if x.ndim == 1 or index is not None:
                 axis = "_".join(w for w in (what.axis, "" if index is None else str(index + 1)) if w)
                 found[name, index] = what.signal, axis
-    return found
+    found |= _beside(found, tables)
+    vague = {p for p, (signal, _) in found.items() if signal == "position" and not _says_place(p[0])}
+    grid = {p for p in vague if grows(x := values_of(p, tables)) and evenly(x)}
+    found = {p: what for p, what in found.items() if p not in grid}
+    clear = any(signal == "position" and p not in vague for p, (signal, _) in found.items())
+    return {p: what for p, what in found.items() if not (clear and p in vague)}
+
+
+def _beside(found: Mapping[Place, tuple[str, str]], tables: Tables) -> dict[Place, tuple[str, str]]:
+    """Return places along x with those along y that stand beside them, where no `u` drives what comes out as `y`."""
+    out: dict[Place, tuple[str, str]] = {}
+    for (name, index), (signal, axis) in found.items():
+        along = ALONG_X.sub(lambda match: chr(ord(match[0]) + 1), name)
+        if signal == "position" and along in tables.keys() - {name} and tables[along].shape == tables[name].shape:
+            rest = [w for w in axis.split("_") if w and w != "x"]
+            out |= {(n, index): (signal, "_".join([*rest, d])) for n, d in ((name, "x"), (along, "y"))}
+    driven = any(OF_INPUT.search(bare(name)) for name in tables)
+    return {} if driven else out
+
+
+def _says_place(name: str) -> bool:
+    """Return whether a name speaks of a place, by a word or a unit, and not of something that was measured alone."""
+    return bool(set(words_of(name)) & ((POSITION | TURNING) - DIRECTIONS)) or named(name).unit is not None
 
 
 def _living(
@@ -157,11 +185,17 @@ def with_output(placed: Mapping[Place, tuple[str, str]], tables: Tables) -> dict
     }
     if pairs and all(n in tables and tables[n].shape == tables[drive].shape for (n, _), (drive, _) in pairs.items()):
         return {**placed, **{p: ("position", axis) for p, (_, axis) in pairs.items()}}
-    others = {
-        name: named(name) for name, x in tables.items() if x.ndim == 1 and (name, None) not in placed and moves(x)
-    }
-    places = {(n, None): ("position", w.axis or bare(n)) for n, w in others.items() if w.unit in PLACES}
-    return {**placed, **{p: what for p, what in places.items() if not set(words_of(bare(p[0]))) & IGNORED}}
+    unsaid = [name for name, x in tables.items() if x.ndim == 1 and (name, None) not in placed and moves(x)]
+    others = {name: named(name) for name in unsaid if not set(words_of(bare(name))) & IGNORED}
+    places = [n for n, w in others.items() if w.unit in PLACES]
+    places = places or [n for n, w in others.items() if w.unit is None and _is_part(n)]
+    return {**placed, **{(n, None): ("position", others[n].axis or bare(n)) for n in places}}
+
+
+def _is_part(name: str) -> bool:
+    """Return whether a name is a part of a machine and its number, and says nothing else."""
+    words = words_of(bare(name))
+    return bool(set(words) & PARTS) and all(word in PARTS or word.isdigit() for word in words)
 
 
 def with_drive(placed: Mapping[Place, tuple[str, str]]) -> dict[Place, tuple[str, str]]:

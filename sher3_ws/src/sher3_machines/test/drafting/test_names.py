@@ -97,6 +97,10 @@ from sher3_machines.drafting.roles import together
         ("LControl", "command", "l"),
         ("reset", None, ""),
         ("targetSpeed", "asked speed", ""),
+        ("Z_RIst", "position", "z"),
+        ("pidOutput", "command", ""),
+        ("position_reelle_FL_HAA", "position", "fl_haa"),
+        ("obs_13: joint_pos_FL_HAA", "position", "fl_haa"),
     ],
 )
 def test_a_name_says_signal_and_axis(column, signal, axis):

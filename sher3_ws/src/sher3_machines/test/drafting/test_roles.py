@@ -96,3 +96,30 @@ def test_where_a_topic_has_a_table_for_each_joint_places_of_other_topics_are_no_
         joint: {what: f"joint_states/{joint}/{what}" for what in ("position", "effort")}
         for joint in ("lift", "wrist_1")
     }
+
+
+def test_parts_of_a_machine_that_say_nothing_else_are_places():
+    assert signals_of("joint1", "joint_2", "Axis 3", "tcp_x") == {
+        "1": {"position": "joint1"},
+        "2": {"position": "joint_2"},
+        "axis_3": {"position": "Axis 3"},
+    }
+
+
+def test_what_was_measured_is_a_place_where_nothing_is_called_one():
+    found = signals_of("actual_q_0", "target_q_0", "actual_tool_accelerometer_0", "actual_main_state")
+    assert found == {"0": {"position": "actual_q_0", "reference": "target_q_0"}}
+    assert signals_of("command_1", "response_1") == {"1": {"position": "response_1", "reference": "command_1"}}
+
+
+def test_what_lies_beside_x_lies_along_y():
+    assert set(signals_of("tip_x", "tip_y")) == {"tip_x", "tip_y"}
+    assert set(signals_of("x", "y")) == {"x", "y"}
+    assert set(signals_of("x", "y", "u")) == {""}
+    robot = signals_of("X_RIst", "Y_RIst", "A_RIst", "Y_RSol")
+    assert set(robot) == {"x", "y", "a"} and robot["y"]["reference"] == "Y_RSol"
+
+
+def test_a_grid_that_grows_evenly_is_no_place():
+    columns = {"t": T, "X": np.linspace(0.0, 3.0, len(T)), "angle": np.sin(T)}
+    assert ("X", None) not in placed(columns, "t", [])

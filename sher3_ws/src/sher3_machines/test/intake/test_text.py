@@ -183,3 +183,24 @@ def test_settings_stand_above_and_below_a_header_with_stamps_of_windows(tmp_path
     assert list(found) == ["Name", "Act (Counter)", "Act (Resolver)"]
     assert found["Name"][:3] == pytest.approx([1645534548.325, 1645534548.335, 1645534548.345], abs=1e-5)
     assert found["Act (Resolver)"][:60].tolist() == [0.5 * k for k in range(60)]
+
+
+def test_remarks_between_the_rows_and_another_table_below_are_no_rows(tmp_path):
+    rows = [f"{0.1 * i:.1f},{np.sin(0.1 * i):.3f}\n" for i in range(60)]
+    said = [row + ("current_position: -78.3\n" * 40 if i == 30 else '""\n') for i, row in enumerate(rows)]
+    found = tables(tmp_path, "Time (s),angle\n" + "".join(said))
+    assert len(found["Time (s)"]) == 60 and not np.isnan(found["angle"]).any()
+    wide = "".join(f"{0.1 * i:.1f} {i % 7} {i % 5}\n" for i in range(60))
+    found = tables(tmp_path, wide + "".join(f"{0.1 * i:.1f} {i % 3}\n" for i in range(50)))
+    assert len(found["c0"]) == 60 and found["c2"].max() == 4.0
+
+
+def test_tabs_beside_commas_part_nothing(tmp_path):
+    rows = "".join(f"{i},\t{0.5 * i}\t,{-i}\t,0.00\n" for i in range(30))
+    assert tables(tmp_path, rows)["c1"][-1] == 14.5
+
+
+def test_titles_that_are_fewer_than_the_columns_are_none(tmp_path):
+    """Which of them is missing, nobody can tell: all behind it would be read as their neighbours."""
+    rows = "".join(f"{0.01 * i:.2f},{i % 7},{i % 5},{i % 3}\n" for i in range(30))
+    assert list(tables(tmp_path, "time,q,u\n" + rows)) == ["c0", "c1", "c2", "c3"]

@@ -40,8 +40,8 @@ def loads_of(tables: Tables) -> tuple[str, str] | None:
     flat = {n: x for n, x in tables.items() if x.ndim == 1 and np.isfinite(x).mean() >= 1.0 - LACKING}
     if any(tells_time(n) for n in tables) or {"force", "torque"} <= wrench_of(tables).keys():
         return None
-    displaced = any(named(n).signal == "position" and np.ptp(x) > 0.0 for n, x in flat.items())
-    known = (STATED,) if displaced else (STATED, FORCE)  # a force beside travel is what a spring gave
+    moved = any(named(n).signal in ("position", "velocity") and np.ptp(x) > 0.0 for n, x in flat.items())
+    known = (STATED,) if moved else (STATED, FORCE)  # a force beside travel is what a spring or a motor gave
     called = [[n for n in flat if words & set(words_of(bare_and_unit(bare(n))[0]))] for words in known]
     reads = [n for n in flat if named(n).signal not in PLACES and not counts_samples(n)]
     for loads in called:

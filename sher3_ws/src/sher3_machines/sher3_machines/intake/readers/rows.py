@@ -81,6 +81,8 @@ def _one_table(rows: Rows, comma: bool, names: Sequence[str]) -> dict[str, Array
     """Return the numeric columns of rows below a header, or without one: words beside numbers make no header."""
     numeric = [i for i, cell in enumerate(rows[usual_row(len(rows))]) if _is_number(cell, comma)]
     beside = bool(numeric) and all(i < len(rows[0]) and _is_number(rows[0][i], comma) for i in numeric)
+    if numeric and numeric[-1] >= len(rows[0]) > 1 and not beside:  # which of the titles is missing, nobody can tell
+        return _one_table([[f"c{i}" for i in range(numeric[-1] + 1)], *rows[1:]], comma, names)
     if beside or all(value_of(cell, comma) is not None for cell in rows[0]):
         header = list(names) if len(names) == len(rows[0]) else [f"c{i}" for i in range(len(rows[0]))]
     else:

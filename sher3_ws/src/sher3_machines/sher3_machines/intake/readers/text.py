@@ -4,13 +4,17 @@ from __future__ import annotations
 
 import csv
 import re
+from collections import Counter
+from itertools import groupby
 from pathlib import Path
 
 from sher3_common import FileError, read_bytes
 from sher3_diagnosis.channel import Array
 
+from sher3_machines.intake.readers.cells import value_of
 from sher3_machines.intake.readers.long import is_long, tables_of_readings
 from sher3_machines.intake.readers.rows import columns_of, names_of, usual_row
+from sher3_machines.intake.readers.shapes import SAMPLES
 
 MAX_BYTES = 500_000_000
 """Largest text that is read."""
@@ -25,6 +29,8 @@ BYTE_ORDER_MARKS = (b"\xff\xfe", b"\xfe\xff")
 FIRST = 50
 """Rows that tell whether a comma is a decimal mark."""
 DECIMAL_COMMA = re.compile(r"[+-]?\d+,\d+([eE][+-]?\d+)?")
+PADDED = re.compile(r"\t *,|, *\t")
+"""A comma with a tab beside it."""
 QUOTED = re.compile(r'"[^"]*"')
 LISTED = re.compile(r"(?:^|(?<=[,;\t]))\s*\[[^\[\]]*\]")
 """A list in a cell without quotes, whose commas part no cells."""
@@ -44,11 +50,11 @@ def read_table(path: Path) -> dict[str, Array]:
         FileError: the file cannot be read, or is no text.
         ValueError: it has no rows.
     """
-    lines = _unbracketed([line for line in decoded(path).splitlines() if line.strip()])
+    lines = _unbracketed([line for line in _without_padding(decoded(path)).splitlines() if line.strip()])
     preamble = 0
     while preamble < len(lines) and lines[preamble].lstrip().startswith(COMMENTS):
         preamble += 1
-    body = lines[preamble:]
+    body = _largest(lines[preamble:])
     if not body:
         raise ValueError("no rows")
     mark = separator(body[usual_row(len(body))])
@@ -59,6 +65,44 @@ def read_table(path: Path) -> dict[str, Array]:
         return tables_of_readings(rows)
     width = len(rows[usual_row(len(rows))])
     return columns_of(rows, comma, names_of([_names(line, mark, width) for line in lines[:preamble]]))
+
+
+def _without_padding(text: str) -> str:
+    """Return a text without the tabs that stand beside commas to line its columns up."""
+    return PADDED.sub(",", text) if 2 * len(PADDED.findall(text)) > text.count(",") else text
+
+
+def _largest(lines: list[str]) -> list[str]:
+    """Return the lines of the table that holds most cells, with what stands above it, without remarks between its rows.
+
+    Another table is a stretch of lines of another width that begins with numbers: one with titles of its own is left.
+    """
+    if any(sign in line for line in lines for sign in '"[' if line.strip('"')):
+        return lines
+    stretches = [(shape, list(group)) for shape, group in groupby(lines, _shape)]
+    cells = Counter[tuple[str | None, int]]()
+    for shape, group in stretches:
+        cells[shape] += shape[1] * len(group)
+    common = max(cells, key=lambda shape: cells[shape], default=(None, 0))
+    first = next((i for i, (shape, _) in enumerate(stretches) if shape == common), 0)
+    out = [line for _, group in stretches[:first] for line in group]
+    for shape, group in stretches[first:]:
+        remark = common[0] is not None and shape[0] != common[0]
+        other = shape != common and len(group) >= SAMPLES and _numbers(group[0])
+        out += [] if remark or other else group
+    return out
+
+
+def _shape(line: str) -> tuple[str | None, int]:
+    """Return what parts the cells of a line and how many they are."""
+    mark = next((m for m in SEPARATORS if m in line), None)
+    return mark, line.count(mark) + 1 if mark else len(line.split())
+
+
+def _numbers(line: str) -> bool:
+    """Return whether all cells of a line are numbers."""
+    mark = separator(line)
+    return all(value_of(cell, True) is not None for cell in (line.split(mark) if mark else line.split()))
 
 
 def decoded(path: Path) -> str:
