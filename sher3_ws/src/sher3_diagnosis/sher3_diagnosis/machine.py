@@ -148,8 +148,13 @@ class Machine(ABC, Generic[R, E]):
         """
         return {}
 
-    def rehearsals(self, evidence: E) -> Iterator[Rehearsal]:
-        """Yield experiments, the cheapest to make first, for what they would tell of causes; default none."""
+    def rehearsals(self, evidence: E, felt: Collection[str]) -> Iterator[Rehearsal]:
+        """Yield experiments, the cheapest to make first, for what they would tell of causes; default none.
+
+        Args:
+            evidence: of the recorded runs.
+            felt: quantities of `sher3_diagnosis.effect.INPUTS` that the causes depend on: no other is worth changing.
+        """
         yield from ()
 
     def end_to_end(self, findings: Sequence[Finding[E]], causes: Sequence[Cause]) -> Interval | None:

@@ -28,7 +28,7 @@ class Foreseeing(Toy):
     different: str = ""
     elsewhere: bool = True
 
-    def rehearsals(self, evidence):
+    def rehearsals(self, evidence, felt):
         empty = stroke(size=0.0)
         quiet = replace(empty, values=np.zeros_like(empty.values))
         yield Rehearsal("same", "more of the same", "", evidence_of([warmed(quiet, 1.0)]).data)
@@ -58,8 +58,8 @@ def test_what_the_recorded_runs_had_not_is_added_where_they_tell_nothing(alike):
 
 def test_rivals_that_no_experiment_tells_apart_are_one_answer(alike):
     class Same(Foreseeing):
-        def rehearsals(self, evidence):
-            yield next(super().rehearsals(evidence))
+        def rehearsals(self, evidence, felt):
+            yield next(super().rehearsals(evidence, felt))
 
     verdict = diagnose(Same(), alike).verdict
     asked, answers = verdict.next_experiment, verdict.places[0].answers
@@ -117,8 +117,8 @@ def test_deviations_that_only_further_runs_show_may_be_what_tells_the_rivals_apa
     """Where the machine may rub there by itself, the run without warmth tells no drift from a direction."""
 
     class Rubbing(Foreseeing):
-        def rehearsals(self, evidence):
-            for tried in super().rehearsals(evidence):
+        def rehearsals(self, evidence, felt):
+            for tried in super().rehearsals(evidence, felt):
                 both = evidence.data.with_runs(tried.data, tried.data.target)
                 free = make_term(both, DIRECTION, "axis", {})
                 quiet = [{c: 0.0 * x for c, x in run.items()} for run in free.columns[: len(evidence.data.views)]]
@@ -128,6 +128,20 @@ def test_deviations_that_only_further_runs_show_may_be_what_tells_the_rivals_apa
     told, free = (diagnose(x(elsewhere=False), alike).verdict.next_experiment for x in (Foreseeing, Rubbing))
     assert told.expected_odds > 0.95
     assert free.expected_odds < 0.7
+
+
+def test_a_machine_is_told_what_the_rivals_depend_on(alike):
+    """A page that does not say what its law depends on would never be told by what changes that alone."""
+
+    class Asked(Foreseeing):
+        def rehearsals(self, evidence, felt):
+            told.append(set(felt))
+            yield from super().rehearsals(evidence, felt)
+
+    told = []
+    pages = (Column("direction", "d", "direction", inputs=("direction",)), Column("w", "w", "warmth", inputs=("time",)))
+    diagnose(Asked(effects_known=pages), alike)
+    assert told == [{"direction", "time"}]
 
 
 def test_a_machine_that_foresees_nothing_names_what_shows_the_rival(alike):

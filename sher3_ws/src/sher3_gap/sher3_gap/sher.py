@@ -72,11 +72,11 @@ class Sher(Machine[RunSignals, SherEvidence]):
         """Return the noise of encoders, efforts, force sensor and tracker."""
         return noise_of_sensors(runs, self.robot)
 
-    def rehearsals(self, evidence: SherEvidence) -> Iterator[Rehearsal]:
+    def rehearsals(self, evidence: SherEvidence, felt: Collection[str]) -> Iterator[Rehearsal]:
         """Yield the standard set as the nominal robot foresees it."""
         from sher3_gap.experiments.foreseen import foreseen
 
-        yield from foreseen(evidence)
+        yield from foreseen(evidence, felt)
 
     def end_to_end(self, findings: Sequence[Finding[SherEvidence]], causes: Sequence[Cause]) -> Interval | None:
         """Return the closure of the tip in free runs of the simulator."""

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from sher3_diagnosis.channel import AT_TIP, Channel
+from sher3_diagnosis.effect import INPUTS
 from sher3_effects import plants
 from sher3_gap import diagnose_runs
 from sher3_gap.evidence import gather
@@ -26,17 +27,23 @@ def short_strokes():
 
 
 def test_known_loads_and_a_tracker_are_foreseen_where_the_case_has_some_and_where_it_has_none():
-    tracked = list(foreseen(gather(signals(runs_of(["loads"], repeats=2)), ROBOT)))
+    tracked = list(foreseen(gather(signals(runs_of(["loads"], repeats=2)), ROBOT), INPUTS))
     assert {x.added for x in tracked} == {"", WARMED}
     assert {"loads", "postures"} <= {x.excitation for x in tracked}
-    bare = list(foreseen(gather(untracked(runs_of(["steps"], repeats=2)), ROBOT)))
+    bare = list(foreseen(gather(untracked(runs_of(["steps"], repeats=2)), ROBOT), INPUTS))
     assert list(dict.fromkeys(x.added for x in bare)) == ["", LOADED, TRACKED, WARMED]
     assert [x.added for x in bare if x.excitation == "loads"] == [LOADED]
     assert {x.added for x in bare if any(c.stage in AT_TIP for run in x.data.target for c in run)} == {TRACKED}
 
 
+def test_a_robot_is_warmed_only_for_causes_that_feel_it():
+    evidence = gather(signals(runs_of(["loads"], repeats=2)), ROBOT)
+    cold = [x.excitation for x in foreseen(evidence, INPUTS.keys() - {"temperature"})]
+    assert cold == [x.excitation for x in foreseen(evidence, INPUTS) if x.added != WARMED]
+
+
 def test_a_robot_without_a_cause_is_foreseen_at_its_floor():
-    seen = next(foreseen(gather(signals(runs_of(["steps"], repeats=2)), ROBOT)))
+    seen = next(foreseen(gather(signals(runs_of(["steps"], repeats=2)), ROBOT), INPUTS))
     loss = sum(seen.data.null_loss.values()) / sum(seen.data.samples.values())
     assert loss < 1.0
 
@@ -49,13 +56,13 @@ def test_each_excitation_is_simulated_once_for_every_way_to_run_it(monkeypatch):
         return rehearse(robot, asked, **how)
 
     monkeypatch.setattr("sher3_gap.experiments.foreseen.rehearse", counted)
-    tried = [x.excitation for x in foreseen(gather(untracked(runs_of(["steps"], repeats=2)), ROBOT))]
+    tried = [x.excitation for x in foreseen(gather(untracked(runs_of(["steps"], repeats=2)), ROBOT), INPUTS)]
     assert len(made) == len(set(made)) == len(set(tried) - {SAME}) < len(tried) / 2
 
 
 def test_a_new_sensor_shows_deviations_as_built_that_no_recorded_run_does():
     evidence = gather(untracked(runs_of(["steps"], repeats=2)), ROBOT)
-    tried = next(x for x in foreseen(evidence) if x.added == TRACKED)
+    tried = next(x for x in foreseen(evidence, INPUTS) if x.added == TRACKED)
     before, after = ({c.stage for t in terms for c in t.channels} for terms in (evidence.nuisance, tried.as_built()))
     assert not before & set(AT_TIP)
     assert after & set(AT_TIP)
@@ -71,7 +78,7 @@ def test_a_tracker_is_asked_for_where_a_lead_and_an_encoder_scale_give_the_same(
 
 def test_the_recorded_runs_once_warmer_come_before_other_runs_once_warmer():
     evidence = gather(signals(runs_of(["steps", "loads"], repeats=2)), ROBOT)
-    same = next(x for x in foreseen(evidence) if x.added == WARMED)
+    same = next(x for x in foreseen(evidence, INPUTS) if x.added == WARMED)
     assert (same.excitation, same.elsewhere, len(same.data.views)) == (SAME, False, 2)
     for r, view in enumerate(same.data.views):
         assert np.abs(view.warmth - 5.0).max() < 0.5  # recorded at the reference

@@ -2,6 +2,8 @@
 
 import numpy as np
 import pytest
+from scipy.sparse import csr_matrix
+from scipy.sparse.csgraph import maximum_bipartite_matching
 from sher3_gap.stages.overdetermined import not_isolable, overdetermined
 
 
@@ -24,6 +26,16 @@ def table(*rows: str) -> np.ndarray:
 )
 def test_equations_with_redundancy(unknowns, redundant):
     assert overdetermined(unknowns).tolist() == redundant
+
+
+def test_the_overdetermined_part_does_not_hang_on_the_order_of_equations_or_on_the_matching():
+    rng = np.random.default_rng(0)
+    for _ in range(200):
+        unknowns = rng.random(tuple(rng.integers(1, 9, 2))) < rng.uniform(0.1, 0.6)
+        size = maximum_bipartite_matching(csr_matrix(unknowns), perm_type="column")
+        found, order = overdetermined(unknowns), rng.permutation(len(unknowns))
+        assert overdetermined(unknowns[order]).tolist() == found[order].tolist()
+        assert found[size < 0].all()  # what one maximum matching leaves over has redundancy, whichever it is
 
 
 def test_two_readings_show_a_fault_and_three_say_in_which():

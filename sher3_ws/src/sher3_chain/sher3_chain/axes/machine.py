@@ -115,7 +115,7 @@ class Axes(Chain[AxisEvidence]):
         causes = with_second_pole(with_indistinct(causes)) if servo else in_true_force(causes)
         return evidence, [in_own_unit(cause, own) for cause in causes] if own else causes
 
-    def rehearsals(self, evidence: AxisEvidence) -> Iterator[Rehearsal]:
+    def rehearsals(self, evidence: AxisEvidence, felt: Collection[str]) -> Iterator[Rehearsal]:
         """Yield the recorded motions at other speeds, and with a known mass."""
         yield from foreseen(evidence)
 
@@ -176,7 +176,7 @@ class Commands(Axes):
         """Return both as they are: a law is exact."""
         return evidence, causes
 
-    def rehearsals(self, evidence: AxisEvidence) -> Iterator[Rehearsal]:
+    def rehearsals(self, evidence: AxisEvidence, felt: Collection[str]) -> Iterator[Rehearsal]:
         """Yield none: what a law asks for is computed, not recorded again."""
         yield from ()
 

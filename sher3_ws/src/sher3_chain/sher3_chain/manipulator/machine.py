@@ -198,7 +198,7 @@ class Manipulator(Chain[ArmMotionEvidence]):
         views = finding.evidence.data.views
         return unjudged(finding, lambda r, site, ok: views[r].effort[ok, views[r].row(site)])
 
-    def rehearsals(self, evidence: ArmMotionEvidence) -> Iterator[Rehearsal]:
+    def rehearsals(self, evidence: ArmMotionEvidence, felt: Collection[str]) -> Iterator[Rehearsal]:
         """Yield the recorded motion with a known mass on the last link, where the inertias are those of the model."""
         if not self._in_inertias:
             yield from foreseen(evidence)

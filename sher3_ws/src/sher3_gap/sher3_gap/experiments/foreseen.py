@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import replace
 from functools import cache, partial
 
@@ -37,11 +37,12 @@ SAME = "the recorded excitations"
 SAME_WHY = "nothing but the warmth differs, so that nothing else can be taken for it; under names of their own"
 
 
-def foreseen(evidence: SherEvidence) -> Iterator[Rehearsal]:
+def foreseen(evidence: SherEvidence, felt: Collection[str]) -> Iterator[Rehearsal]:
     """Yield each excitation of the standard set, twice in each of two postures, with the floors of a case.
 
-    First as the case was recorded; then with known weights or with the tip tracked, where it had none; then with the
-    robot warmed (which moves no nominal robot), before that the recorded excitations once more.
+    First as the case was recorded; then with known weights or with the tip tracked, where it had none; then, where
+    warmth is `felt` by a cause, with the robot warmed (which moves no nominal robot), before that the recorded
+    excitations once more.
     """
     floor, robot = floors_of(evidence), evidence.robot
     loads = any(run.payload for run in evidence.runs)
@@ -51,7 +52,7 @@ def foreseen(evidence: SherEvidence) -> Iterator[Rehearsal]:
     ways = {"": (names, usual, floor)}
     ways |= {} if loads else {LOADED: (["loads"], usual, floor)}
     ways |= {} if at_tip.keys() & floor.keys() else {TRACKED: (names, usual, at_tip | floor)}
-    ways |= {WARMED: (names, usual + WARMER, floor)}
+    ways |= {WARMED: (names, usual + WARMER, floor)} if "temperature" in felt else {}
     made = cache(partial(_nominal, robot))
     for added, (tried, temperature, known) in ways.items():
         if added == WARMED:

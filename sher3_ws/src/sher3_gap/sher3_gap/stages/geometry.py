@@ -13,13 +13,12 @@ from sher3_diagnosis.channel import Array
 from sher3_diagnosis.filter import settled
 from sher3_kinematics.kernel import (
     KernelParameters,
-    delta_forward,
     gravity_load_into,
     kernel_parameters,
     tip_jacobian_into,
     tip_pose_into,
 )
-from sher3_kinematics.kernel.batch import tip_quaternion_batch
+from sher3_kinematics.kernel.batch import delta_forward_batch, tip_quaternion_batch
 
 from sher3_gap.signals import RAMP_LIMIT, RunSignals
 
@@ -143,7 +142,7 @@ class Geometry:
 
     def platform(self, run: RunSignals) -> Array:
         """Platform centre in {b} at the residual grid, (g, 3)."""
-        return np.array([delta_forward(self.parameters, *q[:3]) for q in self.positions(run)])
+        return delta_forward_batch(self.parameters, self.positions(run))
 
     def links(self, platform: Array) -> Array:
         """Gamma (g, 6, 6) for platform centres (g, 3): columns (u; b x u), links of leg 1, 2, 3 in pairs."""

@@ -1,15 +1,13 @@
 """Overdetermined part of a set of equations, and which faults it cannot isolate from one another.
 
 Coarse decomposition of Dulmage and Mendelsohn (1958); detectability and isolability after Krysander and Frisk, "Sensor
-placement for fault diagnosis" (2008). The maximum matching is SciPy's.
+placement for fault diagnosis" (2008).
 """
 
 from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import csr_matrix
-from scipy.sparse.csgraph import maximum_bipartite_matching
 
 Mask = NDArray[np.bool_]
 
@@ -28,16 +26,30 @@ def overdetermined(unknowns: Mask) -> Mask:
     rows, columns = unknowns.shape
     if not columns:
         return np.ones(rows, dtype=bool)
-    unknown_of_row = maximum_bipartite_matching(csr_matrix(unknowns), perm_type="column")
     row_of_unknown = np.full(columns, -1)
-    matched = unknown_of_row >= 0
-    row_of_unknown[unknown_of_row[matched]] = np.flatnonzero(matched)
+    matched = np.array([_matched(row, unknowns, row_of_unknown, set()) for row in range(rows)], dtype=bool)
     reached, front = ~matched, np.flatnonzero(~matched)
     while front.size:
         neighbours = row_of_unknown[unknowns[front].any(axis=0)]
         front = np.unique(neighbours[~reached[neighbours]])
         reached[front] = True
     return reached
+
+
+def _matched(row: int, unknowns: Mask, row_of_unknown: NDArray[np.int64], tried: set[int]) -> bool:
+    """Give an equation an unknown of its own, moving others along an augmenting path; whether there is one.
+
+    A row without one never gets one later (Kuhn, 1955), so that the rows may be taken in turn. A score of equations
+    needs no library: the import of SciPy's graphs takes longer.
+    """
+    for unknown in np.flatnonzero(unknowns[row]).tolist():
+        if unknown not in tried:
+            tried.add(unknown)
+            owner = int(row_of_unknown[unknown])
+            if owner < 0 or _matched(owner, unknowns, row_of_unknown, tried):
+                row_of_unknown[unknown] = row
+                return True
+    return False
 
 
 def not_isolable(unknowns: Mask, faults: Mask) -> Mask:

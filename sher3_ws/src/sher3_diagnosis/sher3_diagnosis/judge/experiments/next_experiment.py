@@ -45,7 +45,7 @@ def _foretold(machine: Machine, finding: Finding, judged: Judged) -> NextExperim
     That nothing tells two effects apart is known once every experiment was rehearsed.
     """
     enough, rivals, groups = SETTLED * judged.library, Rivals.of(finding, judged), []
-    rehearsals = machine.of(finding.evidence).rehearsals(finding.evidence)
+    rehearsals = machine.of(finding.evidence).rehearsals(finding.evidence, rivals.felt)
     alike = rivals.each
     for _, group in groupby(rehearsals, key=lambda x: (x.added, x.elsewhere)):
         groups.append([(x, rivals.prospect(x.data)) for x in group])

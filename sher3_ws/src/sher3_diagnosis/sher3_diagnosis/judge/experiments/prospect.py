@@ -149,6 +149,11 @@ class Rivals:
         return Prospect(outcomes)
 
     @property
+    def felt(self) -> frozenset[str]:
+        """Quantities that the laws depend on, and the causes beside them: what changes none of these parts nothing."""
+        return frozenset(x for law in self.laws for term in law.found.terms for x in term.effect.inputs)
+
+    @property
     def each(self) -> Alike:
         """Every effect by itself."""
         return [frozenset({law.effect}) for law in self.laws]
