@@ -123,7 +123,8 @@ def drafted(path: Path, tables: Tables, rate: float | None, guesses: list[str], 
         reached[spelt[axis]] = max(reached.get(spelt[axis], 0.0), farthest)
     axes = [_axis(axis, signals, tables, period, reached[spelt[axis]], guesses) for axis, signals in groups.items()]
     homes = {place for signals in groups.values() for place in signals.values()}
-    astray = any(signal in ("command", "effort") and place not in homes for place, (signal, _) in roles.items())
+    unhoused = [n for n in tables if n not in {name for name, _ in homes} and moves(tables[n])]
+    astray = [n for n in unhoused if named(n).signal in ("command", "effort")]  # may drive, and found no axis
     for drafted_axis, signals in () if astray else zip(axes, groups.values(), strict=True):
         _let_go(drafted_axis, values_of(signals["position"], tables), guesses, alone=len(axes) == 1)
     checked_by_speed(time, axes, tables, None if clock is None else tables[clock], guesses)
@@ -137,6 +138,8 @@ def drafted(path: Path, tables: Tables, rate: float | None, guesses: list[str], 
             "itself is `kind: force_sensor`, postures with measured poses are `kind: arm`; levels and temperatures are "
             "no machine",
         )
+    if len(axes) > 1:
+        guesses.extend(f"{n!r} drives one of these axes, and nothing says which: write it there" for n in astray)
     if left:
         more = f" and {len(left) - LISTED} more" if len(left) > LISTED else ""
         guesses.append(f"not used: {', '.join(left[:LISTED])}{more}")

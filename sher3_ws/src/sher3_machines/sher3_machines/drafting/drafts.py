@@ -8,7 +8,16 @@ from pathlib import Path
 from sher3_common import parse_yaml
 
 from sher3_machines.drafting.draft import draft, written
-from sher3_machines.drafting.unnamed import Place, as_recorded, given, named_by_motion, renamed
+from sher3_machines.drafting.unnamed import (
+    Place,
+    as_recorded,
+    clock_among,
+    given,
+    named_by_motion,
+    places_of,
+    renamed,
+    said,
+)
 from sher3_machines.errors import MachineError
 from sher3_machines.intake.kind import Draft
 from sher3_machines.intake.kinds import kinds
@@ -41,9 +50,16 @@ def draft_of(path: Path, rate: float | None = None, model: Path | None = None, n
         return _named(path, tables, rate, model, given(names, tables), [])
     try:
         return _draft(path, tables, rate, model)
-    except MachineError:
+    except MachineError as refused:
         guesses: list[str] = []
         found = named_by_motion(tables, rate, guesses)
+        if not found and (clock := clock_among(tables)):
+            raise MachineError(
+                f"{path.name}: no column looks like a position",
+                value=", ".join(map(said, places_of(tables))),
+                limit=f"one that follows another one, or is the integral of one; {clock} is the time",
+                remedy="name the columns in order, an empty one for what is no signal: --names t,q,,u",
+            ) from refused
         if not found:
             raise
         return _named(path, tables, rate, model, found, guesses)

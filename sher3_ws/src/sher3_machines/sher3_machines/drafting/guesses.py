@@ -9,7 +9,7 @@ import numpy as np
 from sher3_diagnosis.channel import Array
 from sher3_diagnosis.localise.floors import noise_of_bends
 
-from sher3_machines.drafting.names import bare_and_unit, counts_samples, tells_time
+from sher3_machines.drafting.names import bare_and_unit, counts_samples, named, tells_time
 from sher3_machines.errors import MachineError
 from sher3_machines.intake.fields import TIME_UNITS
 from sher3_machines.intake.spelling import bare
@@ -43,6 +43,8 @@ DECADE = 3e8
 """Seconds that a record covers at most: a counter may grow through `EPOCH`, and does so from nothing."""
 USUAL_RATES = (5.0, 20_000.0)
 """Rates, Hz, between which a clock is believed: of servo loops, and of slow loggers."""
+SLOWEST = 1.0
+"""Rate, Hz, down to which stamps that are no whole numbers are in s."""
 DYING = 0.5
 """Swing of the last third of a record over that of the first one below which its body comes to rest."""
 CROSSINGS = 3
@@ -73,7 +75,7 @@ def clock_of(tables: Tables, guesses: list[str]) -> str:
         best = max(clocks, key=lambda n: len(growing[n]))
         guesses.append(f"time is the column {best!r}, because of its name and because it grows")
         return best
-    even = [n for n, x in growing.items() if evenly(x) and not counts_samples(n)]
+    even = [n for n, x in growing.items() if evenly(x) and not counts_samples(n) and named(bare(n)).signal is None]
     even = [n for n in even if not counts_rows(growing[n])]
     if even:
         guesses.append(f"time is the column {even[0]!r}, because it grows evenly")
@@ -172,6 +174,9 @@ def time_unit(clock: str, stamps: Array, guesses: list[str]) -> str:
     period = period_of(stamps)
     if in_thousandths(stamps):
         guesses.append("time in s, because its stamps are read to a thousandth, which is a ms")
+        return "s"
+    if SLOWEST < 1.0 / period < USUAL_RATES[0] and bool((stamps % 1.0 != 0.0).mean() > 0.5):
+        guesses.append("time in s, because a count of ms or us is whole")
         return "s"
     for unit, scale in TIME_UNITS.items():
         if USUAL_RATES[0] <= 1.0 / (period * scale) <= USUAL_RATES[1]:

@@ -119,6 +119,10 @@ def _named(tables: Tables, clock: str | None) -> dict[Place, tuple[str, str]]:
                 found[name, index] = what.signal, axis
     found |= _beside(found, tables)
     vague = {p for p, (signal, _) in found.items() if signal == "position" and not _says_place(p[0])}
+    speeds = [p for p, (signal, _) in found.items() if signal == "velocity"]
+    again = {p for p, (signal, _) in found.items() if signal in ("position", "load") and not _says_place(p[0])}
+    again = {p for p in again if any(np.array_equal(values_of(p, tables), values_of(v, tables)) for v in speeds)}
+    found = {p: what for p, what in found.items() if p not in again}
     grid = {p for p in vague if grows(x := values_of(p, tables)) and evenly(x)}
     found = {p: what for p, what in found.items() if p not in grid}
     clear = any(signal == "position" and p not in vague for p, (signal, _) in found.items())

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from sher3_diagnosis.channel import Array
 
-from sher3_machines.drafting.guesses import counts_rows, evenly, grows, swings_to_rest
+from sher3_machines.drafting.guesses import CROSSINGS, counts_rows, evenly, grows, swings_to_rest
 from sher3_machines.drafting.names import bare_and_unit
 from sher3_machines.errors import MachineError
 from sher3_machines.intake.mending.motion import AGREES, FOLLOWS, speed_of, speed_ratio
@@ -35,6 +35,8 @@ LATEST = 20
 """Part of a record by which a place is late after its reference at most."""
 ROWS = 5000
 """Rows of a record that tell so, of a longer one every second or third row: each lateness takes a look at all."""
+HELD = 0.5
+"""Share of the rows in which a reference that does not swing changes at most: it is told in steps."""
 AS_FAR = 1.25
 """Travel of one over that of the other from which a place is not told another one: a voltage, of a speed."""
 CIRCLE = 1e-2
@@ -71,7 +73,7 @@ def given(names: Sequence[str], tables: Tables) -> dict[Place, str]:
         raise MachineError(
             "names do not fit the columns",
             value=", ".join(names),
-            limit=f"{len(places)} different ones: {', '.join(_said(place) for place in places)}",
+            limit=f"{len(places)} different ones: {', '.join(said(place) for place in places)}",
             remedy="give one name for each column, as in `--names t,q,i`; an empty one leaves its column out",
         )
     return {place: _in_unit(name, place[0]) for place, name in zip(places, names, strict=True) if name}
@@ -98,6 +100,12 @@ def named_by_motion(tables: Tables, rate: float | None, guesses: list[str]) -> d
     return {p: f"{table}/{name}" if table else name for table, own in told.items() for p, name in own.items()}
 
 
+def clock_among(tables: Tables) -> str:
+    """Return the column without a name that is the time, as `data[0]`; empty where none is."""
+    clock, _, _ = _timed(tables, None)
+    return said(clock) if clock else ""
+
+
 def _told(tables: Tables, rate: float | None, guesses: list[str]) -> dict[Place, str]:
     """Return names for the columns of one table that have none."""
     clock, t, columns = _timed(tables, rate)
@@ -118,19 +126,19 @@ def _told(tables: Tables, rate: float | None, guesses: list[str]) -> dict[Place,
     if found or followers:
         (x, other), role = (found or followers)[0], VELOCITY if found else REFERENCE
         why = "its speed" if found else "what it follows"
-        guesses.append(f"{_said(x)} is a position, because {_said(other)} is {why}; nobody named them")
+        guesses.append(f"{said(x)} is a position, because {said(other)} is {why}; nobody named them")
         named = {x: POSITION, other: role} | ({asked[0]: REFERENCE} if len(asked) == 1 else {})
     elif len(moving) == 1 and swings_to_rest(*moving.values()):
         (x,) = moving
-        guesses.append(f"{_said(x)} is a position, because it swings to rest and nothing else moves; nobody named it")
+        guesses.append(f"{said(x)} is a position, because it swings to rest and nothing else moves; nobody named it")
         named = {x: POSITION}
     else:
         return {}
     left = [p for p in moving if p not in named]
     if found and len(left) == 1 and _drives(t, moving[x], moving[other], moving[left[0]]):
-        guesses.append(f"{_said(left[0])} is the effort, because it balances the motion; nobody named it")
+        guesses.append(f"{said(left[0])} is the effort, because it balances the motion; nobody named it")
         named[left.pop()] = EFFORT
-    rest = ", ".join(map(_said, left))
+    rest = ", ".join(map(said, left))
     guesses.extend([f"not told by the motion: {rest}; name them: --names t,q,..."] if rest else [])
     return {**({clock: "time"} if clock else {}), **named}
 
@@ -149,9 +157,15 @@ def _drives(t: Array, x: Array, v: Array, force: Array) -> bool:
 
 
 def _follows(x: Array, asked: Array) -> bool:
-    """Return whether a column (n,) is another one some samples later, in its size if not in its sense."""
+    """Return whether a column (n,) is another one some samples later, in its size if not in its sense.
+
+    What goes smoothly one way and back is late after all that does.
+    """
     x, asked = (y[:: len(x) // ROWS + 1] for y in (x, asked))
     latest = len(x) // LATEST
+    sides = np.sign(asked - asked.mean())
+    if np.sum(np.diff(sides) != 0.0) < CROSSINGS and np.mean(np.diff(asked) != 0.0) > HELD:
+        return False
     left = {d: _left(x[latest:], asked[latest - d : len(asked) - d]) for d in range(latest + 1)}
     best = min(left, key=lambda d: left[d][0])
     return best > 0 and left[best][0] < 1.0 - FOLLOWS and 1.0 / AS_FAR < abs(left[best][1]) < AS_FAR
@@ -193,7 +207,7 @@ def named_by_blocks(tables: Tables, rate: float | None, joints: int, guesses: li
     kinds |= dict(zip(left, (EFFORT, ACCELERATION), strict=False)) if len(left) < 3 else {}
     for i, kind in kinds.items():
         why = "it is what is left" if kind == EFFORT else "the motion says so"
-        guesses.append(f"{_said(blocks[i][0])} to {_said(blocks[i][-1])} are the {kind} of {joints} joints: {why}")
+        guesses.append(f"{said(blocks[i][0])} to {said(blocks[i][-1])} are the {kind} of {joints} joints: {why}")
     named = {place: f"{kind}_{n}" for i, kind in kinds.items() for n, place in enumerate(blocks[i], 1)}
     return {**({clock: "time"} if clock and named else {}), **named}
 
@@ -274,5 +288,6 @@ def as_recorded(description: Any, names: Mapping[Place, str]) -> Any:
     return out
 
 
-def _said(place: Place) -> str:
+def said(place: Place) -> str:
+    """Return a column, or an entry of one, as people write it."""
     return place[0] if place[1] is None else f"{place[0]}[{place[1]}]"

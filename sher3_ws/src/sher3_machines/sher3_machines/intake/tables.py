@@ -169,6 +169,15 @@ def _lies(name: str, x: Array, tables: Tables) -> bool:
     return not of_file and _wide(*x.shape)
 
 
+def as_long(tables: Tables) -> Tables:
+    """Return the arrays of a file; of those that are one sample longer than others the last sample is left out.
+
+    A state is logged once more than what was told between one and the next.
+    """
+    lengths = {(table_of(name), len(x)) for name, x in tables.items() if len(x) >= SAMPLES}
+    return {name: x[:-1] if (table_of(name), len(x) - 1) in lengths else x for name, x in tables.items()}
+
+
 def with_whole_clocks(tables: Tables) -> Tables:
     """Return the arrays of a file, and a column `stamp` for each clock in two columns: seconds, and nanoseconds."""
     found = dict(tables)
@@ -210,7 +219,7 @@ def is_rosbag2(path: Path) -> bool:
 
 def _read(path: Path, reader: Callable[[Path], Tables]) -> Tables:
     try:
-        return of_curves(with_whole_clocks(upright(reader(path))))
+        return of_curves(with_whole_clocks(as_long(upright(reader(path)))))
     except FileError as error:
         raise MachineError(
             f"{path}: {error.reason}", value=error.value, limit=error.limit, remedy=error.remedy or "check the file"

@@ -392,3 +392,31 @@ def test_a_pendulum_on_a_cart_has_a_unit_of_its_own_and_is_let_go(tmp_path):
     pend, cart = (next(axis for axis in found["axes"] if axis["name"] == name) for name in ("pend", "cart"))
     assert pend["signals"]["position"]["unit"] == "rad" and pend["mass"] == 1.0
     assert cart["signals"]["position"]["unit"] == "count" and "mass" not in cart
+
+
+def test_what_may_drive_is_said_and_no_body_is_let_go_beside_it(tmp_path):
+    t = np.arange(2000) / 100.0
+    swing = np.exp(-0.3 * t) * np.cos(4.0 * t)
+    columns = np.column_stack([t, swing, 0.5 * np.sin(t), np.sin(5.0 * t)])
+    np.savetxt(tmp_path / "a.csv", columns, delimiter=",", header="t,theta_1,theta_2,input", comments="")
+    found = draft(tmp_path / "a.csv")
+    assert "'input' drives one of these axes, and nothing says which" in found.text and "let go" not in found.text
+    np.savetxt(tmp_path / "b.csv", columns[:, :3], delimiter=",", header="t,theta_1,theta_2", comments="")
+    assert "theta_1" in draft(tmp_path / "b.csv").text and "joint1: let go" in draft(tmp_path / "b.csv").text
+
+
+def test_what_was_moved_from_one_point_to_another_was_not_let_go(tmp_path):
+    t = np.arange(1000) / 100.0
+    np.savetxt(tmp_path / "a.csv", np.column_stack([t, np.tanh(t)]), delimiter=",", header="t,angle", comments="")
+    assert "let go" not in draft(tmp_path / "a.csv").text
+
+
+def test_fractions_of_a_slow_clock_are_seconds_and_a_rate_is_no_clock(tmp_path):
+    t = np.arange(200) * 0.2333
+    np.savetxt(tmp_path / "a.csv", np.column_stack([t, np.sin(t)]), delimiter=",", header="t,angle", comments="")
+    assert parse_yaml(draft(tmp_path / "a.csv").text)["time"]["unit"] == "s"
+    np.savetxt(
+        tmp_path / "b.csv", np.column_stack([t, np.sin(t)]), delimiter=",", header="baud_rate,speed", comments=""
+    )
+    with pytest.raises(MachineError, match="no column looks like a time"):
+        draft(tmp_path / "b.csv")

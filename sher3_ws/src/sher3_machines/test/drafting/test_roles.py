@@ -123,3 +123,12 @@ def test_what_lies_beside_x_lies_along_y():
 def test_a_grid_that_grows_evenly_is_no_place():
     columns = {"t": T, "X": np.linspace(0.0, 3.0, len(T)), "angle": np.sin(T)}
     assert ("X", None) not in placed(columns, "t", [])
+
+
+def test_a_speed_under_two_names_is_a_speed():
+    columns = {"t": T, "AngularVel": np.sin(T), "data/OutputData": np.sin(T), "data/InputData": np.cos(T)}
+    found = placed(columns, "t", [])
+    assert {name: signal for (name, _), (signal, _) in found.items() if name != "t"} == {
+        "AngularVel": "position",
+        "data/InputData": "command",
+    }

@@ -211,3 +211,12 @@ def test_u_and_y_of_one_part_of_a_record_are_what_drives_and_what_comes_out(tmp_
     assert [[axis["signals"][k]["column"] for k in ("position", "command")] for axis in axes] == [
         ["y_train", "u_train"]
     ] * 2
+
+
+def test_joints_that_go_one_way_and_back_do_not_follow_each_other(tmp_path):
+    """What is late after it all the same is refused with its time, and with how to name the rest."""
+    t = np.arange(300) / 100.0
+    q = [np.sin(1.5 * t - 0.1 * i) for i in range(2)]
+    np.savetxt(tmp_path / "a.csv", np.column_stack([t, *q]), delimiter=",")
+    with pytest.raises(MachineError, match=r"c0 is the time; name the columns in order"):
+        draft_of(tmp_path / "a.csv")

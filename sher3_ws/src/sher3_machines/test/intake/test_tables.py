@@ -62,3 +62,10 @@ def test_texts_are_read_in_a_folder_that_holds_no_other_data(tmp_path):
 def test_a_matrix_by_itself_that_is_much_wider_than_long_has_a_row_for_each_signal(tmp_path, shape, read):
     np.savez(tmp_path / "a.npz", data=np.arange(shape[0] * shape[1], dtype=float).reshape(shape))
     assert read_tables(tmp_path / "a.npz")["data"].shape == read
+
+
+def test_what_is_one_sample_longer_is_as_long_as_the_clock(tmp_path):
+    t = np.arange(50.0)
+    np.savez(tmp_path / "a.npz", t=t, u=np.arange(51.0), gain=np.ones(3))
+    found = read_tables(tmp_path / "a.npz")
+    assert {name: len(x) for name, x in found.items()} == {"t": 50, "u": 50, "gain": 3} and found["u"][-1] == 49.0
