@@ -28,7 +28,7 @@ POSITION = vocabulary(
 COUNTING = vocabulary("encoder enc")
 """Words for a place that, where it is whole all along, is in counts."""
 VELOCITY = vocabulary(
-    "velocity velocities vel speed qd dq omega qdot qvel gyro drehzahl geschwindigkeit rate dot thetadot xdot "
+    "velocity velocities vel speed spd qd dq omega qdot qvel gyro drehzahl geschwindigkeit rate dot thetadot xdot "
     "velocidad velocidade vitesse velocità"
 )
 EFFORT = vocabulary("effort efforts torque torques tau taus tao force iq trq moment drehmoment strom kraft amps qfrc f")
@@ -113,6 +113,8 @@ SHORT = vocabulary("x z i u n d q t f")
 """Words of one letter: beside a longer word for the quantity they are the name of the axis."""
 FORCEFUL = EFFORT | CURRENT | COMMAND | APPLIED
 """Words beside which a single letter at the end is a unit: `force_N`, `iq_A`, `u_V`; `enc_A` is the encoder of A."""
+ACCELERATION = re.compile(r"(?i)a_[xyz]")
+"""An acceleration along an axis, of an inertial sensor."""
 NUMBERED = re.compile(r"\w*\d+: *(?=[A-Za-z])")
 """What numbers a column before its name: `obs_13: joint_pos`."""
 SIDES = re.compile(r"(?i)(?<![a-z])(q|theta)_(?=[ml](?![a-z0-9]))")
@@ -150,6 +152,8 @@ def named(column: str) -> Named:
     last = NUMBERED.sub("", last)
     known, unit = bare_and_unit(last)
     words = words_of(known)
+    if ACCELERATION.fullmatch(known):
+        return Named(None, "", unit)
     if tables and words and set(words) <= READING:  # a channel of a control system: its table has the name
         words = words_of(tables.pop())
     if tables and unit is None and not set(words) & TELLING:  # a file for each signal: its columns are the joints

@@ -99,6 +99,8 @@ from sher3_machines.drafting.roles import together
         ("targetSpeed", "asked speed", ""),
         ("Z_RIst", "position", "z"),
         ("pidOutput", "command", ""),
+        ("a_x", None, ""),
+        ("motor_spd", "velocity", ""),
         ("position_reelle_FL_HAA", "position", "fl_haa"),
         ("obs_13: joint_pos_FL_HAA", "position", "fl_haa"),
     ],

@@ -204,3 +204,11 @@ def test_titles_that_are_fewer_than_the_columns_are_none(tmp_path):
     """Which of them is missing, nobody can tell: all behind it would be read as their neighbours."""
     rows = "".join(f"{0.01 * i:.2f},{i % 7},{i % 5},{i % 3}\n" for i in range(30))
     assert list(tables(tmp_path, "time,q,u\n" + rows)) == ["c0", "c1", "c2", "c3"]
+
+
+@pytest.mark.parametrize("mark", [", ", " "])
+def test_a_log_of_python_has_its_stamp_in_one_column(tmp_path, mark):
+    rows = "".join(f"2021-12-27 18:06:{i:02d},250 {0.5 * i}{mark}-0.05\n" for i in range(30))
+    found = tables(tmp_path, rows)
+    assert list(found) == ["c0", "c1", "c2"] and found["c1"][4] == 2.0
+    assert np.diff(found["c0"]) == pytest.approx(1.0)

@@ -29,6 +29,8 @@ BYTE_ORDER_MARKS = (b"\xff\xfe", b"\xfe\xff")
 FIRST = 50
 """Rows that tell whether a comma is a decimal mark."""
 DECIMAL_COMMA = re.compile(r"[+-]?\d+,\d+([eE][+-]?\d+)?")
+STAMPED = re.compile(r"(?m)^(\d{4}-\d\d-\d\d) (\d\d:\d\d:\d\d),(\d{3})[ \t]+")
+"""What each line of a log of Python begins with: date, time of day, and milliseconds behind a comma."""
 PADDED = re.compile(r"\t *,|, *\t")
 """A comma with a tab beside it."""
 QUOTED = re.compile(r'"[^"]*"')
@@ -68,8 +70,11 @@ def read_table(path: Path) -> dict[str, Array]:
 
 
 def _without_padding(text: str) -> str:
-    """Return a text without the tabs that stand beside commas to line its columns up."""
-    return PADDED.sub(",", text) if 2 * len(PADDED.findall(text)) > text.count(",") else text
+    """Return a text without the tabs that stand beside commas to line its columns up, its stamps in one cell."""
+    if STAMPED.match(text):
+        behind = STAMPED.sub("", text.partition("\n")[0])
+        text = STAMPED.sub(r"\1T\2.\3" + ("," if "," in behind else " "), text)
+    return PADDED.sub(",", text) if "\t" in text and 2 * len(PADDED.findall(text)) > text.count(",") else text
 
 
 def _largest(lines: list[str]) -> list[str]:
@@ -77,7 +82,11 @@ def _largest(lines: list[str]) -> list[str]:
 
     Another table is a stretch of lines of another width that begins with numbers: one with titles of its own is left.
     """
-    if any(sign in line for line in lines for sign in '"[' if line.strip('"')):
+    middle = lines[len(lines) // 2 :][:FIRST]
+    mark = _shape(middle[0])[0] if middle else None
+    if mark and len({line.count(mark) for line in lines}) == 1:  # one table, as most files are
+        return lines
+    if any(sign in line for line in middle for sign in '"[' if line.strip('"')):  # cells with marks of their own
         return lines
     stretches = [(shape, list(group)) for shape, group in groupby(lines, _shape)]
     cells = Counter[tuple[str | None, int]]()
