@@ -19,7 +19,8 @@ from typing import Any
 
 import mujoco
 import numpy as np
-from settle_axes import OPEN, shares
+from settle import OPEN
+from settle_axes import Reached, shares
 from sher3_chain.joint.record import AxesRun
 from sher3_chain.manipulator.description import ManipulatorDescription
 from sher3_chain.manipulator.foreseen import BESIDE
@@ -89,7 +90,7 @@ class Arm:
         return diagnose(machine, runs).verdict
 
 
-def settled(seed: int, folder: Path) -> tuple[float, float, float] | None:
+def settled(seed: int, folder: Path) -> Reached | None:
     """Return the odds of what is at work as expected and as reached, and those of the likeliest answer; None if none.
 
     A line is printed for each arm.
@@ -112,7 +113,7 @@ def settled(seed: int, folder: Path) -> tuple[float, float, float] | None:
     likely = max((a.probability for a in answers), default=0.0)
     how = f"{' / '.join(asked.separates)}; {mass:g} kg, {asked.expected_odds:.2f} expected, {right:.2f} reached"
     print(f"{wrong}: {how}: {said(after)}", flush=True)
-    return asked.expected_odds, right, likely
+    return Reached(asked.expected_odds, right, likely)
 
 
 def said(verdict: Verdict) -> str:

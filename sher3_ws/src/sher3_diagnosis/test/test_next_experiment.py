@@ -85,6 +85,36 @@ def test_less_is_promised_where_a_law_may_be_bent_as_nobody_has_seen(alike):
     assert 0.95 < bent.next_experiment.expected_odds < library - 0.005
 
 
+class Elsewhere(Column):
+    """Follows the warmth, but for the experiment that goes far."""
+
+    def signature(self, view, site, shape):
+        other = Column("other", "drift", "one" if view.excitation == "far" else "warmth")
+        return other.signature(view, site, {})
+
+
+@dataclass(frozen=True)
+class GoingFar(Foreseeing):
+    """A toy whose direction is told where it was recorded, and the two others only far from there."""
+
+    effects_known: tuple = (DIRECTION, WARMTH, Elsewhere("elsewhere", "drift", "warmth"))
+
+    def rehearsals(self, evidence, felt):
+        empty = stroke(size=0.0)
+        quiet = warmed(replace(empty, values=np.zeros_like(empty.values)), 0.5)
+        far = replace(quiet, excitation="far")
+        yield Rehearsal("known", "half as warm", "", evidence_of([quiet] * 2).data, elsewhere=False)
+        yield Rehearsal("far", "and far", "", evidence_of([far] * 12).data, elsewhere=self.elsewhere)
+
+
+@pytest.mark.parametrize(("elsewhere", "first"), [(True, "known"), (False, "far")])
+def test_what_goes_nowhere_new_comes_first_where_it_settles_a_law(alike, elsewhere, first):
+    """Far away a bend may show that nobody has seen; of three laws the known place tells one, and the far one all."""
+    asked = diagnose(GoingFar(elsewhere=elsewhere), alike).verdict.next_experiment
+    assert asked.excitation == first
+    assert asked.expected_odds == pytest.approx(2 / 3 if elsewhere else 1.0, abs=0.02)
+
+
 class Formed(Column):
     """Follows the warmth, or in its other form the direction."""
 

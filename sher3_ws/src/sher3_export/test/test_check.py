@@ -17,7 +17,7 @@ from sher3_export.check.check import Checked, JointGap, check
 from sher3_export.check.coverage import DRAWS, Windows, covered, inside, scatter_of
 from sher3_export.errors import MujocoMissing
 from sher3_export.ranges import Ranges, interval, shares_of, worlds_of
-from slides import columns, driven, machine, run_of
+from slides import MASS, columns, driven, machine, run_of
 from verdicts import cause, verdict
 
 
@@ -181,6 +181,41 @@ def test_an_arm_in_motion_is_run_from_its_own_model(tmp_path, monkeypatch):
     found = check(verdict(*causes), Path("case"), None)
     assert [gap.joint for gap in found.gaps] == ["lift", "swing"]
     assert all(gap.after < 0.3 * gap.before for gap in found.gaps), found.gaps
+
+
+def test_a_known_mass_on_an_axis_is_on_its_model_in_the_run_that_had_it(monkeypatch):
+    """The description's mass is 20 % too small: without the known mass the second run would move half as far."""
+    runs = [run_of(driven(seconds=8.0)), replace(run_of(driven(seconds=8.0, mass=2.0 * MASS)), name="weighed")]
+    weighed = machine(mass=0.8 * MASS, carried={"weighed": MASS})
+    monkeypatch.setattr(checking, "open_case", lambda path: (weighed, runs))
+    (gap,) = check(verdict(cause("payload_mass", "slide", mass=0.2 * MASS, unit="kg")), Path("case"), None).gaps
+    assert gap.closure.value > 0.95
+    recorded = checking.recorded(weighed, runs, {}, late=False)
+    assert [[load.mass for load in run.carried] for run in recorded] == [[], [MASS]]
+
+
+def test_a_known_mass_on_a_link_is_on_its_model_in_the_run_that_had_it(tmp_path, monkeypatch):
+    """A lift with a pendulum and friction on both joints; the second run has 0.9 kg on the pendulum."""
+    import lifts
+
+    at, (q, v, a) = (0.1, 0.1, 0.1), lifts.motion(seconds=8.0)
+    friction = lifts.friction(v, coulomb=(6.0, 0.5))
+    loads = {"first": 0.0, "second": 0.9}
+    runs = [lifts.run_of(q, lifts.needed(q, v, a, m, at[0], at[2]) + friction, name=n) for n, m in loads.items()]
+    known = {"second": {"mass": 0.9, "link": "pendulum", "centre": at}}
+    arm = lifts.machine(tmp_path / "lift.urdf", carried=known)
+    causes = (
+        cause("coulomb_friction", "lift", force=6.0),
+        cause("coulomb_friction", "swing", force=0.5, unit="N*m"),
+    )
+    monkeypatch.setattr(checking, "open_case", lambda path: (arm, runs))
+    found = check(verdict(*causes), Path("case"), None)
+    assert all(gap.after < 0.3 * gap.before for gap in found.gaps), found.gaps
+    text = found.exported.text.replace('name="pendulum"', 'name="hanging"')
+    model = tmp_path / "other.xml"
+    model.write_text(text)
+    with pytest.raises(ExportError, match="lacks what `carried` names"):
+        check(verdict(*causes), Path("case"), model)
 
 
 @pytest.mark.parametrize("side", ["joints", "motors"])

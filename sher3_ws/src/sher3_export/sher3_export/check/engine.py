@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib import import_module
 from types import ModuleType
 from typing import Any
@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from sher3_diagnosis.channel import Array
 
-from sher3_export.check.recorded import Recorded, Track
+from sher3_export.check.recorded import Load, Recorded, Track
 from sher3_export.errors import ExportError, MujocoMissing
 from sher3_export.targets.mjcf.body import controlled
 from sher3_export.xml_file import written
@@ -97,22 +97,27 @@ class Engine:
     """A compiled model and how its joints are driven.
 
     Attributes:
-        model: of MuJoCo.
+        text: of the model.
+        model: the same, compiled.
         actuator: joint -> number of its actuator, and the drive for which its control is one.
     """
 
+    text: str
     model: Any
     actuator: Mapping[str, tuple[int, float]]
 
     def run(self, record: Recorded, push: Mapping[str, Array] | None = None) -> dict[str, Array]:
         """Return measured less simulated position of each joint, (windows, samples), m or rad.
 
-        The time step becomes one that divides the period of the record.
+        The time step becomes one that divides the period of the record; what was put on in the run is on the model.
 
         Args:
             record: of one run.
             push: joint -> (windows,) force that acts beside the model's, constant over a window, N or N m.
         """
+        if record.carried:
+            loaded = replace(self, model=carrying(self.text, record.carried))
+            return loaded.run(replace(record, carried=()), push)
         api = mujoco()
         data = api.MjData(self.model)
         starts, length = windows(record)
@@ -195,4 +200,25 @@ def compiled(text: str, joints: Sequence[str], gears: Mapping[str, tuple[int, fl
             if joint in joints and joint not in gears and gain:
                 gear, stiffness = float(model.actuator_gear[number][0]), -float(model.actuator_biasprm[number][1])
                 gears[joint] = (number, gain / (stiffness * gear) if stiffness else gain * gear)
-    return Engine(model, gears)
+    return Engine(text, model, gears)
+
+
+def carrying(text: str, loads: Sequence[Load]) -> Any:
+    """Compile a model with known masses on it: as inertia of a joint, or as a body that is fixed to a link.
+
+    Raises:
+        ExportError: the model lacks a joint or link that carries one.
+    """
+    spec = mujoco().MjSpec.from_string(text)
+    for load in loads:
+        on = spec.joint(load.on) if load.centre is None else spec.body(load.on)
+        if on is None:
+            remedy = "give a model by --model that calls it so"
+            raise ExportError("the model lacks what `carried` names", value=load.on, remedy=remedy)
+        if load.centre is None:
+            on.armature += load.mass
+        else:
+            at = np.add(on.joints[0].pos if on.joints else 0.0, load.centre)
+            inertia = {"mass": load.mass, "inertia": [DUST] * 3, "explicitinertial": True}
+            on.add_body(pos=at, ipos=[0.0] * 3, iquat=[1.0, 0.0, 0.0, 0.0], **inertia)
+    return spec.compile()

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from sher3_chain.axes.machine import Axes
+from sher3_chain.joint.conditions import carried_in
 from sher3_chain.joint.description import Axis
 from sher3_chain.joint.record import AxesRun
 from sher3_chain.manipulator.description import Joint, ManipulatorDescription
@@ -46,12 +47,27 @@ class Track:
     servo: bool = False
 
 
+class Load(NamedTuple):
+    """A known mass that was put on in one run.
+
+    Attributes:
+        mass: kg, or kg m^2 on an axis that turns.
+        on: joint of the model that it moves with, or link where it has a centre.
+        centre: of it in the frame of the link's joint, m; None on an axis, of which its weight was recorded apart.
+    """
+
+    mass: float
+    on: str
+    centre: tuple[float, float, float] | None = None
+
+
 @dataclass(frozen=True)
 class Recorded:
-    """One run: its period, s, and a track for each joint, by the joint's name in the model."""
+    """One run: its period, s, a track for each joint, by the joint's name in the model, and what was put on."""
 
     period: float
     tracks: Mapping[str, Track]
+    carried: Sequence[Load] = ()
 
 
 def recorded(machine: object, runs: Sequence[Any], joints: Mapping[str, str], late: bool) -> list[Recorded]:
@@ -74,16 +90,25 @@ def recorded(machine: object, runs: Sequence[Any], joints: Mapping[str, str], la
     axes = [axis for axis in machine.described.chain if isinstance(machine, Manipulator) or not left_alone(axis)]
     coupled = isinstance(machine, Manipulator) and machine.described.coupling is not None
     late = late and not coupled  # what a motor that moves several joints is late by no model can be given
-    out = []
-    for run in runs:
+    out, names = [], [run.name for run in runs]
+    for number, run in enumerate(runs):
         places = [run.signals[axis.name]["position"] for axis in axes]
         drives = [drive_of(run.signals[axis.name], axis, late) for axis in axes]
         if isinstance(machine, Manipulator) and coupled:
             places, drives = on_joints(places, drives, machine.described)
         each = zip(axes, places, drives, strict=True)
         tracks = {joints.get(axis.name, axis.name): track_of(run, axis, q, drive, late) for axis, q, drive in each}
-        out.append(Recorded(run.period, tracks))
+        out.append(Recorded(run.period, tracks, carried_by(machine, names, joints)[number]))
     return out
+
+
+def carried_by(machine: Axes | Manipulator, runs: Sequence[str], joints: Mapping[str, str]) -> list[list[Load]]:
+    """Return the known masses that were put on in each run; raises MachineError where a stated run is none of them."""
+    if isinstance(machine, Manipulator):
+        known = carried_in(machine.described.carried, runs)
+        return [[] if x is None else [Load(x.mass, x.link, x.centre)] for x in known]
+    each = {joints.get(axis.name, axis.name): carried_in(axis.carried, runs) for axis in machine.described.axes}
+    return [[Load(m, joint) for joint, x in each.items() if (m := x[r]) is not None] for r in range(len(runs))]
 
 
 def left_alone(axis: Axis) -> bool:

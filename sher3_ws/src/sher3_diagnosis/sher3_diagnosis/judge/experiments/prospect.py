@@ -67,7 +67,14 @@ class Prospect:
 
     def odds(self, alike: Alike) -> float:
         """Return the probability after it of what is at work, and of what nothing tells from it, over the laws."""
-        return sum(o.odds * o.library * sum(o.shares[k] for k in o.shares.keys() & alike[o.law]) for o in self.outcomes)
+        return sum(self.by_law(alike))
+
+    def by_law(self, alike: Alike) -> list[float]:
+        """Return what each law, where it is at work, adds to these odds."""
+        out = [0.0] * len(alike)
+        for o in self.outcomes:
+            out[o.law] += o.odds * o.library * sum(o.shares[k] for k in o.shares.keys() & alike[o.law])
+        return out
 
 
 @dataclass(frozen=True)
