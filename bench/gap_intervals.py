@@ -6,8 +6,8 @@
 
 Single faults of 5 to 20 floors, one kind after the other in a random order; or those of at least 5 floors in labelled
 cases that a challenge kept. Printed are, for every parameter that was found by name, its error, its half width, and the
-half width that noise alone would leave (Cramer and Rao), all relative; then coverage and medians by plant, and the
-factor on all widths that covers 94 % of the other plants' parameters, with what it covers here.
+half width that noise alone would leave (Cramer and Rao), all relative; then a table of coverage and medians by plant,
+and of the factor on all widths that covers 94 % of the other plants' parameters, with what it covers here.
 """
 
 from __future__ import annotations
@@ -88,28 +88,39 @@ def kept(folders: list[str]) -> Iterator[tuple[str, Path, dict[str, Any]]]:
                 yield plant, case, truth
 
 
-def report(rows: list[Row]) -> None:
-    """Print coverage and width by plant, and the factor with each plant left out."""
-    for plant in (*sorted({r.plant for r in rows}), "all"):
-        part = [r for r in rows if plant in (r.plant, "all")]
-        hits = sum(r.inside for r in part)
-        low, high = wilson(hits / len(part), len(part))
-        print(
-            f"{plant}: cover {hits / len(part):.2f} [{low:.2f}, {high:.2f}], median half width "
-            f"{np.median([r.half for r in part]):.3f}, by noise alone {np.median([r.least for r in part]):.3f}, "
-            f"median error {np.median([abs(r.error) for r in part]):.3f}, "
-            f"n {len(part)}"
-        )
-        others = [abs(r.error) / r.half for r in rows if r.plant != plant and r.half > 0.0]
-        if others:
-            factor = np.quantile(others, COVER)
-            held = np.mean([abs(r.error) <= factor * r.half for r in part])
-            print(f"    widths times {factor:.2f} cover {COVER:.0%} of {'the others' if plant != 'all' else 'all'}, "
-                  f"{held:.2f} of these")  # fmt: skip
+def table(rows: list[Row]) -> str:
+    """Return cover and width by plant as a table of the page `interval-figures.md`."""
+    plants = sorted({r.plant for r in rows})
+    parts = [[r for r in rows if r.plant == p] for p in plants] + [rows]
+    others = [[r for r in rows if r.plant != p] for p in plants] + [rows]
+    factors = [np.quantile([abs(r.error) / r.half for r in x if r.half > 0.0] or [np.nan], COVER) for x in others]
+    left_out = [np.mean([abs(r.error) <= f * r.half for r in x]) for f, x in zip(factors, parts, strict=True)]
+    lines = {
+        "number": [str(len(x)) for x in parts],
+        "hold the truth": [held(x) for x in parts],
+        "median half width": [f"{100.0 * np.median([r.half for r in x]):.1f} %" for x in parts],
+        "by noise alone": [f"{100.0 * np.median([r.least for r in x]):.1f} %" for x in parts],
+        "median error": [f"{100.0 * np.median([abs(r.error) for r in x]):.1f} %" for x in parts],
+    }
+    if len(plants) > 1:
+        lines |= {
+            f"all widths times, so that {100.0 * COVER:.0f} % of the others hold it": [f"{x:.2f}" for x in factors],
+            "then hold the truth": [f"{x:.2f}" for x in left_out],
+        }
+    head = ["parameters", *plants, "together"]
+    cells = [head, ["---"] * len(head), *([name, *row] for name, row in lines.items())]
+    return "\n".join(f"| {' | '.join(row)} |" for row in cells)
+
+
+def held(rows: list[Row]) -> str:
+    """Return the share of intervals that hold the truth, with its Wilson interval."""
+    hits = sum(r.inside for r in rows)
+    low, high = wilson(hits / len(rows), len(rows))
+    return f"{hits / len(rows):.2f} [{low:.2f}, {high:.2f}]"
 
 
 def main() -> None:
-    """Print one line per parameter, then the shares."""
+    """Print one line per parameter, then the table."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("folders", nargs="*", metavar="[PLANT=]FOLDER", help="labelled cases; default new ones")
     parser.add_argument("--plant", choices=plant_names(), help="one of the plants; default all in turn")
@@ -134,7 +145,7 @@ def main() -> None:
             text = f"{row.error:+.3f} of ±{row.half:.3f}, ±{row.least:.3f} by noise alone"
             print(f"{row.plant} {row.case} {row.effect} {row.name}: {text}", flush=True)
     if rows:
-        report(rows)
+        print(table(rows))
 
 
 if __name__ == "__main__":
