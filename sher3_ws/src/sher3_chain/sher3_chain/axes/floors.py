@@ -24,7 +24,7 @@ def unforeseen(view: AxisView, residual: Residual, channel: Channel) -> Array:
     A straight line, or the past motion and known inputs: whichever foresees more. Inputs also foresee a part of the
     encoder's own noise, since differences correlate its samples; `of_readings` keeps that part.
     """
-    return np.minimum(plain_innovation(view, residual, channel), foreseen(view.run, residual))
+    return np.minimum(plain_innovation(view, residual, channel), foreseen(view.run, residual, view.direction))
 
 
 def of_readings(view: AxisView) -> Floors:
