@@ -35,7 +35,9 @@ def swept(seed, rate, dry, viscous):
     rows = force[::every] + rng.normal(0.0, 0.007, len(force[::every]))
     axis = {**axis_with(True, count, ("position", "effort")), "command_law": {"kind": "force"}, "mass": "unknown"}
     signals = {"position": count * np.round(place[::every] / count), "effort": rows}
-    return {c.effect for c in diagnose(machine_of(axis), [AxesRun("run", every * STEP, {"axis": signals})]).verdict.causes}
+    return {
+        c.effect for c in diagnose(machine_of(axis), [AxesRun("run", every * STEP, {"axis": signals})]).verdict.causes
+    }
 
 
 @pytest.mark.parametrize("rate", [20, 50, 100])
