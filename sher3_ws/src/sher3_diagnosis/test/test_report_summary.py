@@ -11,6 +11,7 @@ from sher3_diagnosis.verdict import (
     Interval,
     NextExperiment,
     Parameter,
+    Place,
     Residual,
     Unexplained,
     Verdict,
@@ -182,6 +183,27 @@ def test_the_headline_says_what_the_rest_is():
     assert headline(answer) == "Backlash on tilt: 95 % of the gap; the rest is what its law leaves out."
     rests = {"backlash": "the elasticity of its contact"}
     assert headline(answer, rests).endswith("the rest is the elasticity of its contact.")
+
+
+def left_at(actuator, closes, floors):
+    """A place of an arm of which a cause closes a share and leaves some floors of 0.1 N m."""
+    bet = Answer(
+        causes=[FRICTION.model_copy(update={"actuator": actuator})],
+        probability=0.99,
+        closure=Interval(value=closes),
+        residual=Residual(gap=0.1 * floors, floor=0.1, unit="N*m"),
+    )
+    rest = Answer(answer="outside_library", probability=0.01)
+    where = {"stage": "motor_mechanics", "actuator": actuator, "gap": 2.0, "floor": 0.1, "unit": "N*m"}
+    return Place(**where, answers=[bet, rest])
+
+
+def test_the_headline_says_what_named_causes_do_not_explain():
+    """Arms were attributed at 46 % of the gap of a joint, and nothing said so; a remainder near the floor is none."""
+    places = [left_at("a", 0.97, 8.0), left_at("b", 0.46, 7.0), left_at("c", 0.8, 12.0), left_at("d", 0.6, 1.5)]
+    said = headline(verdict("attributed", causes=[FRICTION], places=places))
+    assert said.endswith("; not explained: 20 % at c, 12.0 times its floor; 54 % at b, 7.0 times its floor.")
+    assert "not explained" not in headline(verdict("attributed", causes=[FRICTION], places=places[:1]))
 
 
 def test_the_command_goes_on_from_the_verdict():

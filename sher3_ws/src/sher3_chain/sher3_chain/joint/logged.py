@@ -7,7 +7,7 @@ from sher3_diagnosis.channel import Array
 from sher3_machines.errors import MachineError
 from sher3_machines.intake.columns import IN_HEADER, clock_beside, find, pick
 from sher3_machines.intake.fields import TIME_UNITS, VELOCITIES, Clock, Column
-from sher3_machines.intake.mending.counted import counted_stamps
+from sher3_machines.intake.mending.counted import counted_stamps, is_even
 from sher3_machines.intake.mending.fields import signed
 from sher3_machines.intake.spelling import table_of
 from sher3_machines.intake.tables import Tables
@@ -61,6 +61,11 @@ def with_counted_clock(tables: Tables, machine: ChainDescription, run: str) -> t
 
 def _note(run: str, stamps: Array, counted: Array, fresh: Array) -> str:
     """Return what is said of a clock that was counted."""
+    if is_even(stamps):
+        more = float((counted[-1] - counted[0]) / (stamps[-1] - stamps[0]) - 1.0)
+        return (
+            f"{run}: rows are lost that its even stamps do not tell, {more:.0%} of them; recorded speeds are the clock"
+        )
     off = 1e3 * float(np.std(np.diff(stamps) - np.diff(counted)))
     lost = int(len(fresh) - fresh.sum())
     again = f"; {lost} rows that repeat an instant are left out" if lost else ""

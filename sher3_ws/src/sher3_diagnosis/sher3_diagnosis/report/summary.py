@@ -9,11 +9,18 @@ from typing import Any
 from sher3_diagnosis.report.odds import name_of, odds, significant, sized, told
 from sher3_diagnosis.report.odds import shown_parameters as shown_parameters
 from sher3_diagnosis.reporter import Reporter, Table
+from sher3_diagnosis.thresholds import REMAINDER, WITHIN
 from sher3_diagnosis.verdict import Cause, Interval, Noise, Verdict
 from sher3_diagnosis.words import listed, lower, place, quantity, ratio_text, share, words
 
 LEFT_OVER = 1.2
 """Rms that is left, over the floor, from which the headline says what it is. A convention of the words."""
+
+TOLD = 3
+"""Places named of which a part is not explained. A convention of the words."""
+
+TINY = 1e-300
+"""Floor in place of none."""
 
 WORTH_TRYING = 0.1
 """Probability of the best bet from which the next line tries it although something else is more probable."""
@@ -36,10 +43,11 @@ def headline(verdict: Verdict, rests: Mapping[str, str] = MappingProxyType({})) 
         where, rest = (" where it was judged", f"; {unjudged}") if unjudged else ("", "")
         return f"No gap{where}: the machine does what its model says, to within its own repeatability{rest}."
     spoken = odds(verdict)
+    open_still = _not_explained(verdict)
     if spoken:
-        return _sentence(f"{spoken}.")
+        return _sentence(f"{spoken}{open_still}.")
     if verdict.status == "attributed":
-        return _sentence(f"{_finding(verdict)}: {_share(verdict)}{_rest(verdict, rests)}.")
+        return _sentence(f"{_finding(verdict)}: {_share(verdict)}{open_still or _rest(verdict, rests)}.")
     if verdict.status == "under_excited":
         open_ones = [f"{name_of(c)} or {listed([lower(r) for r in c.rivals])}" for c in verdict.causes if c.rivals]
         return _sentence(f"{listed(open_ones or names)}: these runs cannot tell.")
@@ -128,6 +136,20 @@ def _rest(verdict: Verdict, rests: Mapping[str, str]) -> str:
     if len(verdict.causes) > 1:
         return "; the rest is what their laws leave out"
     return f"; the rest is {rests.get(verdict.causes[0].effect) or 'what its law leaves out'}"
+
+
+def _not_explained(verdict: Verdict) -> str:
+    """Return what named causes leave of their gaps, where that is more than a known cause may; most floors first."""
+    bets = [(p, p.bet) for p in verdict.places if verdict.status == "attributed" and p.bet is not None]
+    left = [
+        (b.residual.gap / max(p.floor, TINY), 1.0 - b.closure.value, p)
+        for p, b in bets
+        if b.closure is not None and b.residual is not None and b.closure.value < 1.0 - REMAINDER
+    ]
+    far = sorted((x for x in left if x[0] > WITHIN), key=lambda x: -x[0])
+    each = [f"{share(rest)} at {place(p.actuator)}, {ratio_text(floors)} times its floor" for floors, rest, p in far]
+    more = f", and at {len(each) - TOLD} more" if len(each) > TOLD else ""
+    return f"; not explained: {'; '.join(each[:TOLD])}{more}" if each else ""
 
 
 def _sentence(text: str) -> str:

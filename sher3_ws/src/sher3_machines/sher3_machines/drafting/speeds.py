@@ -10,6 +10,7 @@ from sher3_diagnosis.channel import Array
 
 from sher3_machines.drafting.names import named
 from sher3_machines.intake.fields import TIME_UNITS, VELOCITIES
+from sher3_machines.intake.mending.counted import counted_stamps
 from sher3_machines.intake.mending.fields import signed
 from sher3_machines.intake.mending.motion import AGREES, likely_unit, speed_ratio
 from sher3_machines.intake.tables import SAMPLES, Tables
@@ -70,7 +71,11 @@ def _ratio(
         return None
     kept = np.isfinite(t) & np.isfinite(x) & np.isfinite(v)
     kept[kept] = np.concatenate([[True], np.diff(t[kept]) > 0.0])
-    return speed_ratio(t[kept], x[kept], v[kept]) if kept.sum() > SAMPLES else None
+    if kept.sum() <= SAMPLES:
+        return None
+    t, x, v = t[kept], x[kept], v[kept]
+    counted = counted_stamps(t, x[:, None], v[:, None])  # what the import takes for the clock
+    return speed_ratio(t if counted is None else counted, x, v)
 
 
 def _numbers(column: Mapping[str, Any], tables: Tables) -> Array:

@@ -65,3 +65,17 @@ def test_readings_that_a_faster_log_holds_unevenly_are_counted(seed):
     assert found is not None
     steps = np.diff(found[found != np.roll(found, 1)])
     assert np.mean(np.abs(steps / np.median(steps) - 1.0) < 1e-6) > 0.99
+
+
+@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize("every", [40, 150])
+def test_rows_that_even_stamps_hide_are_counted(seed, every):
+    """A logger that numbers its rows and is held up for 5 to 20 of them: the record takes longer than it says."""
+    rng = np.random.default_rng(seed)
+    steps = np.ones(4000)
+    steps[every::every] = rng.integers(5, 20, size=len(steps[every::every]))
+    true = PERIOD * np.concatenate([[0.0], np.cumsum(steps)])
+    x, v = motion(true, seed)
+    found = counted_stamps(PERIOD * np.arange(len(true)), x, v + 1e-3 * rng.normal(size=v.shape))
+    assert found is not None
+    assert np.abs(np.diff(found) - np.diff(true)).mean() < 0.01 * PERIOD

@@ -3,7 +3,8 @@
 A logger stamps a sample when it comes to it, often by half a period and more too late or too early, and loses some. A
 place that was differentiated twice turns that into accelerations far beyond those of the motion. What a joint moved
 from row to row over its speed is the time that passed for it: where that is a whole number of periods at nearly every
-row, it is the clock.
+row, it is the clock. A logger that writes the number of the row times a period loses some without a sign in its stamps:
+what has passed is then longer than they say.
 """
 
 from __future__ import annotations
@@ -27,6 +28,8 @@ periods are the clock."""
 SURE = 0.15
 """Standard deviation of the time that passed, in periods, up to which a slow row counts too: three of them are less
 than half a period."""
+EVEN = 1e-3
+"""Share of a period by which the steps of stamps that were counted, and not taken, may differ: their rounding."""
 LONGEST = 20.0
 """Periods between two rows beyond which the stamps are believed: a mean of two speeds tells no such time."""
 
@@ -72,8 +75,15 @@ def _counted(t: Array, x: Array, v: Array, held: bool) -> Array | None:
     noise = rms((off * np.sqrt(square))[moving])
     rest = np.maximum(np.round(np.diff(t) / period), 1.0) if held else 1.0
     counts = np.where(noise < SURE * period * np.sqrt(square), counts, rest)
-    period = float(np.diff(t)[~hole].sum() / counts[~hole].sum())  # the whole takes as long as the stamps say
-    return np.asarray(t[0] + np.concatenate([[0.0], np.cumsum(np.where(hole, np.diff(t), period * counts))]))
+    steps = np.diff(t)  # taken as they came, the whole takes as long as they say; counted, each says the period
+    period = float(steps[0] if is_even(t) else steps[~hole].sum() / counts[~hole].sum())
+    return np.asarray(t[0] + np.concatenate([[0.0], np.cumsum(np.where(hole, steps, period * counts))]))
+
+
+def is_even(t: Array) -> bool:
+    """Return whether stamps (n,) are the number of the row times a period."""
+    steps = np.diff(t)
+    return bool(np.ptp(steps) < EVEN * steps.mean())
 
 
 def rms(x: Array) -> float:
