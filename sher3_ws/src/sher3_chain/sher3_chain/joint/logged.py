@@ -63,9 +63,7 @@ def _note(run: str, stamps: Array, counted: Array, fresh: Array) -> str:
     """Return what is said of a clock that was counted."""
     if is_even(stamps):
         more = float((counted[-1] - counted[0]) / (stamps[-1] - stamps[0]) - 1.0)
-        return (
-            f"{run}: rows are lost that its even stamps do not tell, {more:.0%} of them; recorded speeds are the clock"
-        )
+        return f"{run}: lost rows that its even stamps do not tell: by recorded speeds it took {more:.0%} longer"
     off = 1e3 * float(np.std(np.diff(stamps) - np.diff(counted)))
     lost = int(len(fresh) - fresh.sum())
     again = f"; {lost} rows that repeat an instant are left out" if lost else ""
