@@ -25,10 +25,10 @@ from sher3_challenge.plants.registry import plant_names, truth_plant
 from sher3_challenge.score.intervals import SYNONYMS
 from sher3_description import load_robot
 from sher3_diagnosis.attribute.candidates import Candidates
+from sher3_diagnosis.attribute.polish import polished
 from sher3_diagnosis.attribute.rivals import Attribution
 from sher3_diagnosis.fit.fitting import Fit
 from sher3_diagnosis.quantify.parameters import parameters
-from sher3_diagnosis.quantify.polish import polished
 from sher3_effects import library
 from sher3_gap.case.loading import signals_of
 from sher3_gap.evidence import SherEvidence

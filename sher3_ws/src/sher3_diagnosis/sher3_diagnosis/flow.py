@@ -13,6 +13,7 @@ from sher3_common import Sher3Error
 from sher3_common.progress import Say, silent
 
 from sher3_diagnosis.attribute.candidates import Candidates
+from sher3_diagnosis.attribute.polish import polished
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.finding import Finding
@@ -29,7 +30,6 @@ from sher3_diagnosis.machine import Diagnosis, Machine
 from sher3_diagnosis.quantify.closure import residual_after
 from sher3_diagnosis.quantify.least_seen import would_have_shown
 from sher3_diagnosis.quantify.motion import in_motion
-from sher3_diagnosis.quantify.polish import polished
 
 R = TypeVar("R")
 E = TypeVar("E", bound=Evidence)

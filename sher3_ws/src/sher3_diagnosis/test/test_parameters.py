@@ -5,13 +5,13 @@ from typing import ClassVar
 
 import numpy as np
 import pytest
+from sher3_diagnosis.attribute.polish import polished
 from sher3_diagnosis.attribute.rivals import Attribution
 from sher3_diagnosis.channel import Channel, Residual
 from sher3_diagnosis.effect import Signature
 from sher3_diagnosis.fit.fitting import fit, make_term
 from sher3_diagnosis.fit.standardised import Standardised
 from sher3_diagnosis.quantify.parameters import parameters
-from sher3_diagnosis.quantify.polish import polished
 from sher3_diagnosis.thresholds import BEYOND, HIDDEN, MIN_RUNS, MISFIT, NORMAL
 from toy import AXIS, OFFSET, Column, ToyRun, evidence_of
 

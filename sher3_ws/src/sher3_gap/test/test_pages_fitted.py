@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 from sher3_diagnosis.attribute.candidates import Candidates
+from sher3_diagnosis.attribute.polish import polished
 from sher3_diagnosis.attribute.rivals import Attribution
 from sher3_diagnosis.fit.fitting import make_term
-from sher3_diagnosis.quantify.polish import polished
 from sher3_effects import library
 from sher3_gap.evidence import gather
 from sher3_gap.excitation import excite

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from sher3_diagnosis.attribute.candidates import Candidates, complexity
+from sher3_diagnosis.attribute.polish import polish
 from sher3_diagnosis.attribute.rivals import Attribution
 from sher3_diagnosis.attribute.ties import TIE
 from sher3_diagnosis.evidence import Evidence
@@ -29,6 +30,8 @@ def exchanged(candidates: Candidates, found: Attribution) -> Fit:
                 trial = candidates.best(effect, term.site, others)
                 if trial is None:
                     continue
+                if complexity(trial.terms[-1]) < complexity(term):  # the grid of its shapes may be all that it lacks
+                    trial = polish(candidates.evidence, trial, len(trial.terms) - 1)
                 if _gain(candidates.evidence, best, i, trial) > TIE:
                     best = fit(candidates.evidence.data, [*others[:i], trial.terms[-1], *others[i:]])
         if best is before:

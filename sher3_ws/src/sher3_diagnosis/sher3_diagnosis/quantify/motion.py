@@ -10,13 +10,13 @@ from dataclasses import replace
 
 import numpy as np
 
+from sher3_diagnosis.attribute.polish import polish
 from sher3_diagnosis.attribute.rivals import InMotion
 from sher3_diagnosis.channel import Channel, Mask
 from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.fit.fitting import Fit, fit
 from sher3_diagnosis.fit.standardised import Standardised
 from sher3_diagnosis.fit.term import Term, make_term
-from sher3_diagnosis.quantify.polish import polish
 
 LEAST = 0.3
 """Share of a channel's samples that must be in motion for them to tell its laws alone."""

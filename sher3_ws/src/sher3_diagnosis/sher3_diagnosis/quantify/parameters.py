@@ -11,6 +11,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from sher3_diagnosis.attribute.local import Local, local
 from sher3_diagnosis.attribute.rivals import without_term
 from sher3_diagnosis.channel import Array
 from sher3_diagnosis.evidence import Evidence
@@ -18,7 +19,6 @@ from sher3_diagnosis.fit.fitting import Fit
 from sher3_diagnosis.fit.term import Term
 from sher3_diagnosis.localise.gaps import gap_of
 from sher3_diagnosis.quantify.closure import residual_after
-from sher3_diagnosis.quantify.local import Local, local
 from sher3_diagnosis.quantify.remains import excess_of, remains
 from sher3_diagnosis.thresholds import BEYOND, HIDDEN, JACKKNIFE, MIN_RUNS, MISFIT, NORMAL
 from sher3_diagnosis.verdict import Parameter

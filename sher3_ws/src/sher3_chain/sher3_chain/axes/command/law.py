@@ -11,9 +11,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from sher3_diagnosis.attribute.plan import SearchPlan
+from sher3_diagnosis.attribute.polish import polished
 from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.evidence import Evidence
-from sher3_diagnosis.quantify.polish import polished
 
 from sher3_chain.axes.command.best_sampling import backwards, best_sampling
 from sher3_chain.axes.command.residual import LawView, floor_of, residual_of

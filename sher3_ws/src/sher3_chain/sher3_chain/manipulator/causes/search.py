@@ -15,6 +15,7 @@ from sher3_common.progress import Say
 from sher3_diagnosis.attribute.candidates import Candidates
 from sher3_diagnosis.attribute.plan import SearchPlan
 from sher3_diagnosis.attribute.planned import planned
+from sher3_diagnosis.attribute.polish import polished
 from sher3_diagnosis.attribute.rivals import Attribution
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.effect import Effect
@@ -22,7 +23,6 @@ from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.fit.fitting import Fit, Term, fit, make_term
 from sher3_diagnosis.fit.tolerance import NUISANCE
 from sher3_diagnosis.judge.left_over import down_to_floor
-from sher3_diagnosis.quantify.polish import polished
 from sher3_diagnosis.thresholds import NEEDED
 from sher3_effects import computed
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from sher3_diagnosis.attribute.local import local
 from sher3_diagnosis.attribute.rivals import Attribution
 from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.fit.fitting import Fit, fit
 from sher3_diagnosis.fit.term import make_term
-from sher3_diagnosis.quantify.local import local
 
 STEPS = 8
 """Steps at most: each is quadratic, but some grids are a factor of four apart."""
