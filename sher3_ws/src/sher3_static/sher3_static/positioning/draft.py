@@ -22,6 +22,7 @@ from sher3_machines.drafting.names import (
     POSITION,
     SECOND,
     TEMPERATURE,
+    VELOCITY,
     bare_and_unit,
     tells_time,
     vocabulary,
@@ -107,7 +108,7 @@ def said(column: str) -> set[str]:
 
 def _columns(flat: Tables) -> tuple[str, list[str]] | None:
     """Return the target, and the reading, the deviation or the passes; None where the table has no such."""
-    targets = [n for n in flat if said(n) & TARGET and not said(n) & (DEVIATION | MEASURED)]
+    targets = [n for n in flat if said(n) & TARGET and not said(n) & (DEVIATION | MEASURED | VELOCITY)]
     for target in targets:
         x = flat[target]
         others = {

@@ -69,3 +69,13 @@ def test_a_record_in_time_is_none(tmp_path):
     clock = 0.01 * np.arange(len(TARGET))
     found = drafted(tmp_path, "time;target_mm;measured_mm", zip(clock, TARGET, TARGET + OFF, strict=True))
     assert "kind: axes" in found.text
+
+
+def test_a_speed_that_is_asked_for_is_no_target(tmp_path):
+    """A robot's log without a word for its clock: speeds of a move hold for many rows, its places do not."""
+    t = np.arange(0.0, 8.0, 0.008)
+    speed = np.where(np.sin(0.8 * t) > 0.0, 0.5, -0.37)
+    place = np.cumsum(speed) * 0.008
+    header = "pc_ts;actual_q_0;target_q_0;actual_qd_0;target_qd_0"
+    rows = zip(1.7e9 + t, place + 1e-5, place, speed + 1e-4 * np.cos(9.0 * t), speed, strict=True)
+    assert "kind: axes" in drafted(tmp_path, header, rows).text
