@@ -17,7 +17,8 @@ ROUNDS = 4
 def exchanged(candidates: Candidates, found: Attribution) -> Fit:
     """Return the fit with every cause, or a rival at its place, searched again beside the others.
 
-    The causes keep their order.
+    The causes keep their order. A plainer law of the same family is tried at its best shape: a dead time between two
+    that the search tries is one still, and no shorter one beside a lag.
     """
     best = found.fit
     for _ in range(ROUNDS):
@@ -30,7 +31,7 @@ def exchanged(candidates: Candidates, found: Attribution) -> Fit:
                 trial = candidates.best(effect, term.site, others)
                 if trial is None:
                     continue
-                if complexity(trial.terms[-1]) < complexity(term):  # the grid of its shapes may be all that it lacks
+                if effect.family == term.effect.family and complexity(trial.terms[-1]) < complexity(term):
                     trial = polish(candidates.evidence, trial, len(trial.terms) - 1)
                 if _gain(candidates.evidence, best, i, trial) > TIE:
                     best = fit(candidates.evidence.data, [*others[:i], trial.terms[-1], *others[i:]])
