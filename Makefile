@@ -39,13 +39,10 @@ test-wall: $(READY)
 test-slow: $(READY)  ## colcon build and test of the workspace, a sealed challenge end to end
 	$(BIN)/pytest -m slow
 
-# What mypy has found out is the user's, as compiled kernels are: it knows a module by its content, so that in the next
-# checkout 2 to 10 s of processor are left of 54. In files, which two checkouts may write at a time.
-TYPES := $(or $(XDG_CACHE_HOME),$(HOME)/.cache)/sher3/mypy
 lint: $(INSTALLED)
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
-	nice -n 5 $(BIN)/mypy --cache-dir $(TYPES) --no-sqlite-cache $(wildcard sher3_ws/src/sher3_*/sher3_*)
+	nice -n 5 $(BIN)/pyrefly check
 
 docs: $(READY)  ## the site in build/docs, readable offline; a warning is an error
 	$(BIN)/python -m sphinx -W --keep-going -q -j auto -d build/doctrees docs build/docs

@@ -71,7 +71,7 @@ class Stream:
     def seconds(self, origin: int | None = None) -> NDArray[np.float64]:
         """Return the stamps in s since `origin` [ns], by default the first stamp."""
         start = (self.stamp[0] if len(self) else 0) if origin is None else origin
-        return (self.stamp - start) * 1e-9
+        return np.multiply(self.stamp - start, 1e-9, dtype=np.float64)
 
 
 def stream(

@@ -15,7 +15,7 @@ import shutil
 import time
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, TypeVar, overload
+from typing import Any, Protocol, TypeVar, cast, overload
 
 from sher3_common.compiling.source_closure import closure_digest
 
@@ -23,6 +23,16 @@ F = TypeVar("F", bound=Callable[..., Any])
 
 KEEP_SECONDS = 7 * 24 * 3600
 """A folder that no process has used for this long is removed: a week of work on other sources does not lose it."""
+
+
+class Compiler(Protocol):
+    """`compiled` with flags of its own: a decorator, and what makes one of further flags."""
+
+    @overload
+    def __call__(self, function: F, /) -> F: ...
+
+    @overload
+    def __call__(self, **flags: Any) -> Callable[[F], F]: ...
 
 
 @overload
@@ -59,7 +69,7 @@ def compiled(function: Any = None, /, **flags: Any) -> Any:
     return dispatcher
 
 
-compiled_ieee = functools.partial(compiled, error_model="numpy", nogil=True)
+compiled_ieee = cast(Compiler, functools.partial(compiled, error_model="numpy", nogil=True))
 """`compiled` for mathematics: a division by zero gives infinity or NaN, and other threads run meanwhile."""
 
 

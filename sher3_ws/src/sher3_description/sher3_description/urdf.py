@@ -29,7 +29,8 @@ def urdf(robot: Robot, prefix: str = "") -> str:
     masses, travels = _masses(robot), _travels(robot)
     _link(root, "b")
     for joint in (*moving_joints(robot), *fixed_joints(robot)):
-        _link(root, joint.child, *masses.get(joint.child, ()))
+        mass, com = masses.get(joint.child, (0.0, ZERO))
+        _link(root, joint.child, mass, com)
         _joint(root, joint, travels.get(joint.name))
     for name, bodies in shapes(robot).items():
         link = root.find(f"link[@name='{name}']")

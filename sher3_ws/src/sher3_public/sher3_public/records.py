@@ -42,7 +42,7 @@ def is_table(record: object) -> bool:
     return named or isinstance(record, Mapping) or (hasattr(record, "columns") and hasattr(record, "__getitem__"))
 
 
-def tables_at(record: object) -> object:
+def tables_at(record: object) -> Any:
     """Return the tables of a log by its path, or of several, one for each run; a list of samples by name as one table.
 
     Other records stay as they are.

@@ -147,7 +147,7 @@ def _as_run(robot: Robot, drive: Excitation, command: Array, r: NDArray[Any], st
     second = np.arange(0, n, max(1, round(1.0 / robot.control_period)))
     seen = r["tracked"]
     released = {"axes": np.ones((n, 1)), "buttons": np.zeros((n, 1), np.int32)}
-    streams = {
+    streams: dict[str, dict[str, Any]] = {
         "servo_jv": {"velocity": command},
         "drives/setpoint_jv": {"velocity": r["demand"]},
         "drives/measured_js": {"position": r["motor"], "velocity": r["velocity"], "effort": r["effort"]},

@@ -18,7 +18,7 @@ from sher3_kinematics.kernel import KernelParameters, kernel_parameters
 from sher3_sim.found import AXIS_TERMS, BODY_TERMS, ROW
 
 Records = Any
-"""A structured array. Named as one, each sum of two of its fields would take mypy tenths of a second."""
+"""A structured array: numpy types none of its fields, so neither does this."""
 
 AXIS = np.dtype(
     [

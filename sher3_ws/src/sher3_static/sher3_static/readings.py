@@ -44,7 +44,7 @@ class Readings:
         return self.columns[column]
 
 
-def joined(runs: Sequence[Readings]) -> dict[str, Array]:
+def joined(runs: Sequence[Readings]) -> dict[str, NDArray[Any]]:
     """Return the columns of all runs after each other, and as `run` (g,) the number of each row's run."""
     columns = {name: np.concatenate([run[name] for run in runs]) for name in runs[0].columns}
     return {**columns, "run": np.repeat(np.arange(len(runs)), [len(next(iter(r.columns.values()))) for r in runs])}

@@ -73,7 +73,7 @@ class Grid:
     @property
     def points(self) -> Floats:
         """Points (count^2, 2) [m] about the centre, horizontal and vertical; row by row, every other row backwards."""
-        line = self.spacing * (np.arange(self.count) - (self.count - 1) / 2)
+        line = self.spacing * (np.arange(self.count, dtype=np.float64) - (self.count - 1) / 2)
         rows = [np.column_stack((line[:: (-1) ** k], np.full(self.count, v))) for k, v in enumerate(line)]
         return np.vstack(rows)
 

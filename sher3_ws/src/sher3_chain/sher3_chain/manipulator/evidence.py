@@ -149,8 +149,10 @@ def gather_arm_motion(
     shares = {name: found[name].turned() for name in unknown}
     modelled = shares if inertias is None else {}  # those found from the data are in the unit of the effort
     factors = np.array([modelled[j.name].value if j.name in modelled else 1.0 for j in described.joints])
-    nominal = (model, factors) if inertias is None else (inertias.model(model), factors, inertias.at(described.joints))
-    views = plain if inertias is None and not shares else seen_by(*nominal)
+    if inertias is not None:
+        views = seen_by(inertias.model(model), factors, inertias.at(described.joints))
+    else:
+        views = seen_by(model, factors) if shares else plain
     residuals = [residuals_of(view, judged) for view in views]
     if not any(residuals):
         raise not_judged(judged, signals, slips)

@@ -131,7 +131,7 @@ def stored(file: Path) -> list[Observation]:
 
 
 def _again(row: dict[str, Any]) -> Observation:
-    listed = {name: tuple(row[name]) for name in ("without", "items", "exact", "places")}
+    listed: dict[str, Any] = {name: tuple(row[name]) for name in ("without", "items", "exact", "places")}
     return Observation(**{**row, **listed})
 
 

@@ -90,7 +90,8 @@ def from_json(text: str) -> tuple[LiveParameters, ControlSettings]:
         lock, bias = AxisLock(live["lock"]), tuple(map(float, live["bias"]))
         if len(bias) != len(ZERO_WRENCH):
             raise ValueError("bias")
-        return LiveParameters(**{**live, "lock": lock, "bias": bias}), ControlSettings.model_validate(data["settings"])
+        stated: dict[str, Any] = {**live, "lock": lock, "bias": bias}
+        return LiveParameters(**stated), ControlSettings.model_validate(data["settings"])
     except (KeyError, TypeError, ValueError) as error:
         raise SettingsError("recorded settings are damaged", value=text[:80], remedy="record the run again") from error
 

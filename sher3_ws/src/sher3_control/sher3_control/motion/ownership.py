@@ -48,7 +48,7 @@ class Ownership:
             why = f"command/{mode.value} has several publishers"
             remedy = "stop all publishers of the topic but one"
             raise OwnerConflict(mode.value, why, owner="unclear", value=publishers, limit=1, remedy=remedy)
-        if self.owner not in (None, mode):
+        if self.owner is not None and self.owner != mode:
             why = f"{self.owner.value} owns the robot since {seconds(self.since):.3f} s"
             remedy = "wait until it ends, or send disable"
             raise OwnerConflict(mode.value, why, owner=self.owner.value, remedy=remedy)

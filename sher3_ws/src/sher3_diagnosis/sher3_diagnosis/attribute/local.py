@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.evidence import Evidence
@@ -142,7 +143,7 @@ def _slope(evidence: Evidence, fit: Fit, index: int, name: str) -> list[dict[Cha
     ]
 
 
-def _pieces(evidence: Evidence, run: int, channel: Channel) -> Array:
+def _pieces(evidence: Evidence, run: int, channel: Channel) -> NDArray[np.intp]:
     """Piece of its excitation that each standardised sample of a run lies in, (N,): repeats share them."""
     ok = evidence.data.residuals[run][channel].ok
     piece = (np.flatnonzero(ok) * PIECES) // len(ok)

@@ -96,7 +96,7 @@ def products(data: Standardised, terms: Sequence[Term], channel: Channel) -> Pro
     if (trail := data.trails.get(channel)) is None:
         trail = data.trails[channel] = [Step(None, _without_terms(data, channel))]
     same, most = 0, min(len(terms), len(trail) - 1)
-    while same < most and trail[same + 1].blocks.term is terms[same]:
+    while same < most and (kept := trail[same + 1].blocks) is not None and kept.term is terms[same]:
         same += 1
     del trail[same + 1 :]
     for term in terms[same:]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import cache
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import jinja2
 
@@ -61,7 +61,8 @@ def _template() -> jinja2.Template:
     """Return the page to be filled, compiled once."""
     loader = jinja2.PackageLoader("sher3_diagnosis", "report")
     environment = jinja2.Environment(loader=loader, autoescape=True, trim_blocks=True, lstrip_blocks=True)
-    environment.globals |= {f.__name__: f for f in SAID}
+    said: dict[str, Any] = {f.__name__: f for f in SAID}
+    environment.globals.update(said)
     environment.filters["words"] = words
     return environment.get_template(TEMPLATE)
 

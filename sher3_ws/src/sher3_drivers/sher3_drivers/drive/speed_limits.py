@@ -150,7 +150,8 @@ class SpeedLimits:
         self._failed = True
         if self._after is not None:
             self.caps = tuple(map(min, self.caps, self._after))
-        self._after, self._asked = None, [None] * len(self._asked)
+        self._after = None
+        self._asked = [None] * len(self._asked)
         for waiting in self._waiting:
             waiting.clear()
         return Trip(Reason.DRIVE_UNLIMITED, text)

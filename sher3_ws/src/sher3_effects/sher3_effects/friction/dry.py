@@ -41,7 +41,8 @@ class DryFriction(Page):
         if not view.holds_at_rest or count == 0.0:
             return None
         rests = np.abs(view.velocity[:, view.row(site)]) < count / STILL
-        columns = self.signature(_Slid(view), site, shape).columns[Channel(self.stage, site)]
+        forward: Any = _Slid(view)
+        columns = self.signature(forward, site, shape).columns[Channel(self.stage, site)]
         return np.where(rests, np.abs(columns[:, 0] @ coefficients), 0.0)
 
 

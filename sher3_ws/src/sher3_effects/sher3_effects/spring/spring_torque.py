@@ -106,4 +106,5 @@ class SpringBesideWeight(SpringOnAxis):
 def _relaxed(linear: float, middle: float, cube: float = 0.0) -> float:
     """Return the place nearest to the middle, over half the travel, at which linear x + cube x^3 + middle is zero."""
     roots = np.roots([cube, 0.0, linear, middle])
-    return float(min(roots[np.abs(roots.imag) <= 1e-9 * (1.0 + np.abs(roots))].real, key=abs))
+    real = roots[np.abs(roots.imag) <= 1e-9 * (1.0 + np.abs(roots))].real
+    return float(real[np.argmin(np.abs(real))])

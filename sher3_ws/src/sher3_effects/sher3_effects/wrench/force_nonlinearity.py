@@ -38,7 +38,8 @@ class ForceNonlinearity(Page):
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
         """Return the largest deviation of curves (p,) from the line through both ends, with its sign, and the order."""
-        whole = sum(c * x for c, x in zip(coefficients, curves(np.linspace(0.0, 1.0, 101)), strict=False))
+        bent = np.stack(curves(np.linspace(0.0, 1.0, 101))[: len(coefficients)])
+        whole = coefficients @ bent
         return {"largest": float(whole[np.argmax(np.abs(whole))]), "order": shape["order"]}
 
 

@@ -120,7 +120,7 @@ class XmlTarget(Target):
         if change.over_stiffness and not (stiffness := self.stiffness(change.joint)):
             return "given in units of the servo's stiffness, which the model does not state"
         elif change.over_stiffness:
-            scaled = {"value": change.value * stiffness, "unit": "N*m" if change.unit == "rad" else "N"}
+            scaled: dict[str, Any] = {"value": change.value * stiffness, "unit": "N*m" if change.unit == "rad" else "N"}
             change = Change(**{**change.__dict__, **scaled})
         return self.rows[change.constant].write(self, change, joint)
 

@@ -173,7 +173,7 @@ def _joint_codec(frame_id: str, joints: tuple[str, ...]) -> Codec:
             given, wanted = ", ".join(names) or "none", ", ".join(joints)
             raise CdrError("joint names differ", value=given, limit=wanted, remedy="name all of them, in any order")
         order = [names.index(joint) for joint in joints]
-        fields = []
+        fields: list[Any] = []
         for label in ("position", "velocity", "effort"):
             count = reader.count(8)
             if count not in (0, n):

@@ -30,7 +30,7 @@ WHOLE = "the sum of sensor and drives is judged from 0.09 s after enabling on, b
 
 def _there(component: str, parameters: dict[str, float], fault: str = "wrong", **more: Any) -> Iterator[Row]:
     """Yield what is there at enabling, and when the robot is recovered."""
-    told = {"slow": True, "reasons": PARTED, "duration": LONG, "states": LED, "budget": 25e-6, **more}
+    told: dict[str, Any] = {"slow": True, "reasons": PARTED, "duration": LONG, "states": LED, "budget": 25e-6, **more}
     yield from (Row(component, fault, parameters, since=since, **told) for since in SINCE)
 
 

@@ -29,7 +29,8 @@ class ParametersNode(Node):
     """
 
     def __init__(self, snapshot: Snapshot, listen: Callable[[], None], **options: Any) -> None:
-        super().__init__("parameters", **{**NODE_OPTIONS, "start_parameter_services": True, **options})
+        stated: dict[str, Any] = {**NODE_OPTIONS, "start_parameter_services": True, **options}
+        super().__init__("parameters", **stated)
         self._snapshot, self._listen = snapshot, listen
         self._known: dict[str, Value] = {}
         self._publish = {topic: advertise(self, topic) for topic in {c.topic for c in SETTABLE.values()}}

@@ -223,5 +223,5 @@ def _run(
 def run_loop(p: TableParameters, odd: Foreign, s: Script) -> Course:
     """Run the closed loop of one robot over a script."""
     parts = (p.motor, p.odd, p.drive, p.transmission, p.host)
-    axes = (tuple(axis_slice(part, j) for j in range(AXES)) for part in parts)
-    return _run(*axes, p.mechanism, p.stray, odd, s)
+    motor, odds, drive, transmission, host = (tuple(axis_slice(part, j) for j in range(AXES)) for part in parts)
+    return _run(motor, odds, drive, transmission, host, p.mechanism, p.stray, odd, s)

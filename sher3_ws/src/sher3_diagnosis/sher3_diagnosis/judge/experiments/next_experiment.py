@@ -84,7 +84,7 @@ def _foretold(machine: Machine, finding: Finding, judged: Judged) -> NextExperim
 def _promise(rivals: Rivals, tried: Rehearsal) -> Prospect:
     """Return what an experiment makes of the odds on machines whose laws are bent where nobody has looked."""
     levels = LABELLED if tried.elsewhere else (0.0,)
-    return rivals.prospect(tried.data, levels, tried.as_built and tried.as_built())
+    return rivals.prospect(tried.data, levels, tried.as_built() if tried.as_built else None)
 
 
 def _open(j: Judged) -> bool:
