@@ -9,7 +9,7 @@ from sher3_description.contract import GRAVITY
 
 from sher3_challenge.plants.compiled import compiled, compiled_inner
 from sher3_challenge.plants.lumped.hysteresis import ELEMENTS, play_offset
-from sher3_challenge.plants.lumped.mechanism import arm_pose, link_forces, rotation, solve_platform, tilt_angle
+from sher3_challenge.plants.lumped.mechanism import arm_pose, cross, link_forces, rotation, solve_platform, tilt_angle
 from sher3_challenge.plants.lumped.parameters import Array, Geometry
 
 OUTER_HINGE = 0.05
@@ -34,7 +34,7 @@ def stretched(g: Geometry, pose: Array, s: Array, tip: Array, force: Array) -> A
     The links' deflection is counted from the one under gravity alone; a rattling leg feels gravity too.
     """
     length = g.link.copy()
-    torque = np.cross(tip - pose[:3], force)
+    torque = cross(tip - pose[:3], force)
     tension = link_forces(g, pose, s, force, torque)
     whole = link_forces(g, pose, s, force + np.array([0.0, 0.0, -GRAVITY * g.masses[0]]), torque)
     for i in range(6):
@@ -51,9 +51,9 @@ def deflected(g: Geometry, pose: Array, tip: Array, turn: Array, force: Array) -
     if hinge[0] != 0.0 or hinge[3] != 0.0 or hinge[2] != 0.0:
         outer = pose[:3] + np.array([OUTER_HINGE, 0.0, g.arm[0]])
         inner_arm, outer_arm = tip - pose[:3], tip - outer
-        bend = (1 - hinge[4]) * hinge[1:4] * np.cross(inner_arm, force)
-        flex = hinge[4] * hinge[1:4] * np.cross(outer_arm, force)
-        tip = tip + np.cross(bend, inner_arm) + np.cross(flex, outer_arm)
+        bend = (1 - hinge[4]) * hinge[1:4] * cross(inner_arm, force)
+        flex = hinge[4] * hinge[1:4] * cross(outer_arm, force)
+        tip = tip + cross(bend, inner_arm) + cross(flex, outer_arm)
         tip[0] += hinge[0] * force[0]
         turn = rotation(bend + flex) @ turn
     if g.bending[0] != 0.0:
@@ -61,7 +61,7 @@ def deflected(g: Geometry, pose: Array, tip: Array, turn: Array, force: Array) -
         across = np.array([g.bending[0] * local[0], g.bending[0] * local[1], 0.0])
         tool = g.arm[3:]
         length = math.sqrt((tool * tool).sum())
-        slope = 1.5 * np.cross(tool / length, across) / length
+        slope = 1.5 * cross(tool / length, across) / length
         tip = tip + turn @ across
         turn = turn @ rotation(slope)
     return tip, turn
