@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 from sher3_machines.intake.columns import IN_HEADER
 from sher3_machines.intake.fields import TIME_UNITS, VELOCITIES
+from sher3_machines.intake.runs import NUMBERING
 from sher3_machines.intake.spelling import PARTING, bare
 from sher3_machines.intake.units import UNITS, spelled
 
@@ -31,7 +32,11 @@ VELOCITY = vocabulary(
     "velocity velocities vel speed spd qd dq omega qdot qvel gyro drehzahl geschwindigkeit rate dot thetadot xdot "
     "velocidad velocidade vitesse velocità"
 )
-EFFORT = vocabulary("effort efforts torque torques tau taus tao force iq trq moment drehmoment strom kraft amps qfrc f")
+EFFORT = vocabulary(
+    "effort efforts torque torques tau taus tao force iq trq moment drehmoment strom kraft amps qfrc f tq"
+)
+TWOFOLD = vocabulary("tq")
+"""Words for an effort that some write for a place that is asked for: a torque, and the target of `q`."""
 CURRENT = vocabulary("current currents curr cur i corriente courant corrente")
 """A current is an effort, but the current position is the measured one."""
 COMMAND = vocabulary(
@@ -113,6 +118,9 @@ SHORT = vocabulary("x z i u n d q t f")
 """Words of one letter: beside a longer word for the quantity they are the name of the axis."""
 FORCEFUL = EFFORT | CURRENT | COMMAND | APPLIED
 """Words beside which a single letter at the end is a unit: `force_N`, `iq_A`, `u_V`; `enc_A` is the encoder of A."""
+COUNTED = POSITION | VELOCITY | TIME | COUNTERS | PARTS | NUMBERING
+"""Words beside which an `N` at the end is a number or a direction: no side is called N, and beside others it is newton.
+"""
 ACCELERATION = re.compile(r"(?i)a_[xyz]")
 """An acceleration along an axis, of an inertial sensor."""
 NUMBERED = re.compile(r"\w*\d+: *(?=[A-Za-z])")
@@ -255,6 +263,7 @@ def bare_and_unit(name: str) -> tuple[str, str | None]:
         return name, None
     said, words = spelled(last), set(words_of(head))
     letter = len(last) == 1 and last.isupper() and bool(words & FORCEFUL)
+    letter = letter or (last == "N" and not words & COUNTED)
     letter = letter or (last == "V" and bool(words & POSITION)) or (last == "g" and bool(words & WEIGHED))
     letter = letter or (last == "m" and bool(words & SLIDING)) or (last == "s" and bool(words & TIME))
     stated = head.endswith("_in") or letter or (len(last) > 1 and not last.isdigit())

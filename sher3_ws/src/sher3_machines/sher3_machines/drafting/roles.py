@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from sher3_diagnosis.channel import Array
 
-from sher3_machines.drafting.guesses import evenly, grows
+from sher3_machines.drafting.guesses import evenly, grows, travel
 from sher3_machines.drafting.names import (
     APPLIED,
     ASKED,
@@ -26,6 +26,7 @@ from sher3_machines.drafting.names import (
     PLACES,
     POSITION,
     TURNING,
+    TWOFOLD,
     VELOCITY,
     counts_samples,
     named,
@@ -50,6 +51,8 @@ LAST_NUMBER = re.compile(r"(?P<stem>.*?)(?P<number>\d+)")
 """Name of an axis that ends in a number."""
 ROUNDED = 1e-5
 """Share of the travel by which two columns of one reading differ at most: they were printed with five digits."""
+NEAR = 0.1
+"""Share of the travel that a place stays behind what was asked of it, at most: a torque is further from it."""
 MEMBERS = vocabulary("joint joints axis axes motor motors wheel wheels left right l r leg arm")
 """Words for a part of a machine that moves by itself."""
 TOGETHER = 0.999
@@ -74,7 +77,7 @@ def placed(tables: Tables, clock: str | None, guesses: list[str], held: bool = F
         guesses: so far.
         held: whether a place that never changes counts: a joint that is held still carries the others.
     """
-    living = _living(counted_alike(_named(tables, clock)), tables, guesses, held)
+    living = _living(counted_alike(_asked(_named(tables, clock), tables)), tables, guesses, held)
     return with_loads(with_speeds(with_drive(with_output(living, tables))))
 
 
@@ -139,6 +142,18 @@ def _beside(found: Mapping[Place, tuple[str, str]], tables: Tables) -> dict[Plac
             out |= {(n, index): (signal, "_".join([*rest, d])) for n, d in ((name, "x"), (along, "y"))}
     driven = any(OF_INPUT.search(bare(name)) for name in tables)
     return {} if driven else out
+
+
+def _asked(found: Mapping[Place, tuple[str, str]], tables: Tables) -> dict[Place, tuple[str, str]]:
+    """Return the signals with what may be a torque, or the target of a place, as a target where the place is near."""
+    places = {axis: values_of(p, tables) for p, (signal, axis) in found.items() if signal == "position"}
+
+    def near(p: Place, axis: str) -> bool:
+        x, y = places.get(axis, np.zeros(0)), values_of(p, tables)
+        return 0 < len(x) == len(y) and float(np.sqrt(np.mean((x - y) ** 2))) < NEAR * travel(x)
+
+    unsure = {p: axis for p, (signal, axis) in found.items() if signal == "effort" and TWOFOLD & set(words_of(p[0]))}
+    return {**found, **{p: ("reference", axis) for p, axis in unsure.items() if near(p, axis)}}
 
 
 def _says_place(name: str) -> bool:

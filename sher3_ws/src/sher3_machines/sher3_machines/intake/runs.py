@@ -26,7 +26,7 @@ FILE = re.compile(r"(?P<group>[^/]+)/(?P<column>.+)")
 DIGITS = re.compile(r"[ _-]?\d+")
 STOPPED_TOGETHER = 10.0
 """Periods of the slowest file between whose ends those of the channels of one log lie, which stop together."""
-NUMBERING = {"index", "id", "number", *EPISODES.split("|")}
+NUMBERING = {"index", "id", "number", "cycle", *EPISODES.split("|")}
 """Words of columns that number the runs, or what was done in them."""
 PARTS = "joint|axis|link|motor|drive|servo|wheel|leg|arm|finger|sensor|channel|ch|j|q|m"
 PART = re.compile(rf"(?i:.*(?<![a-z])({PARTS})[ _-]?\d+([ _-].*)?)")

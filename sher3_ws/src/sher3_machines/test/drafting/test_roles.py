@@ -132,3 +132,15 @@ def test_a_speed_under_two_names_is_a_speed():
         "AngularVel": "position",
         "data/InputData": "command",
     }
+
+
+@pytest.mark.parametrize("late", [0, 5, 20])
+def test_a_word_for_a_torque_or_a_target_is_told_by_what_the_place_does(late):
+    """`tq_0` beside `q_0`, up to 40 ms ahead of it, is what was asked for; what turns about with it is a torque."""
+    q = [np.sin(T), 0.3 * np.cos(2.0 * T)]
+    asked = [np.sin(T + 0.002 * late), 0.3 * np.cos(2.0 * (T + 0.002 * late))]
+    force = [4.0 * np.cos(T) + 9.81, 0.2 * np.sin(2.0 * T)]
+    for said, signal in ((asked, "reference"), (force, "effort")):
+        tables = {f"{word}_{i}": x[i] for word, x in (("q", q), ("tq", said)) for i in range(2)}
+        groups, _ = together(placed(tables, None, []))
+        assert groups == {str(i): {"position": (f"q_{i}", None), signal: (f"tq_{i}", None)} for i in range(2)}

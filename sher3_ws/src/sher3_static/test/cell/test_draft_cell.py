@@ -130,3 +130,11 @@ def test_a_reading_in_a_unit_of_a_load_keeps_it(tmp_path):
     np.savetxt(tmp_path / "a.csv", rows, delimiter=",", header="reference torque [Nm],cell [Nm]", comments="")
     reading = parse_yaml(draft_of(tmp_path / "a.csv").text)["reading"]
     assert reading == {"column": "cell [Nm]", "unit": "N*m"}
+
+
+@pytest.mark.parametrize("header", ["applied_N,reading_N", "known_N,read_N", "reference_N,cell_N", "load_N,output_N"])
+def test_a_letter_behind_what_was_laid_on_or_read_is_newton(tmp_path, header):
+    """And the zero of what counts in newtons, 5.8 N, is found without a factor; a number of the row is no reading."""
+    found = drafted(tmp_path, f"cycle_N,{header}", np.arange(len(LEVELS)) // 8, LEVELS, 1e-3 * COUNTS)
+    assert parse_yaml(found.text)["reading"] == {"column": header.split(",")[1], "unit": "N"}
+    assert bias(tmp_path, found) == {"force_bias": pytest.approx(5.8, rel=0.02)}
