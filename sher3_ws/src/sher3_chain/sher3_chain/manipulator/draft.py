@@ -22,6 +22,11 @@ from sher3_chain.manipulator.mjcf.joint import OWN_EFFORT, drive_joint
 
 TORQUES = EFFORT - frozenset(("iq", "strom", "amps"))
 """Words of an effort that is a force or a torque where its name has no unit."""
+OPEN = frozenset(("effort", "efforts"))
+"""Words of them that a JointState has for a torque, where drivers of Universal Robots write a current."""
+CALLED = "it is called a force or a torque"
+DEFINED = "a JointState says so; where the driver writes currents, as Universal Robots' do, state `gain: unknown`"
+"""Why an effort without a unit is in N or N m."""
 FORCES = ("N", "kN", "N*m", "mN*m")
 OF_JOINT = ("position", "velocity", "reference", "effort", "command", "load")
 """Signals of a joint that a draft keeps: an arm is judged by its forces."""
@@ -173,9 +178,10 @@ def _joint(axis: Mapping[str, Any], joint: str, slides: bool, guesses: list[str]
         signals["reference"]["unit"] = signals["position"]["unit"]
     effort = signals.get("effort") or signals.get("command")
     if effort is not None and effort["unit"] not in FORCES:
-        if "effort" in signals and effort["unit"] == "1" and set(words_of(effort["column"])) & TORQUES:
+        said = set(words_of(effort["column"])) & TORQUES
+        if "effort" in signals and effort["unit"] == "1" and said:
             effort["unit"] = "N" if slides else "N*m"
-            guesses.append(f"{joint}: effort in {effort['unit']}, because it is called a force or a torque")
+            guesses.append(f"{joint}: effort in {effort['unit']}, because {CALLED if said - OPEN else DEFINED}")
         else:
             out["gain"] = "unknown"
             guesses.append(

@@ -66,6 +66,29 @@ def test_a_current_has_an_unknown_gain(tmp_path):
     assert any(guess.startswith("lift: gain unknown") for guess in found.guesses)
 
 
+@pytest.mark.parametrize("newton", [6.0, 10.0, 14.0])
+def test_efforts_of_a_joint_state_that_are_currents_are_refused_and_judged_as_the_draft_says(tmp_path, newton):
+    """A driver writes amperes of `newton` N (N m) each where torques belong: in newtons nothing fits the model."""
+    (tmp_path / "lift.urdf").write_text(URDF)
+    names = ["stamp", *(f"joint_states/{j}/{x}" for x in ("position", "effort") for j in ("lift", "swing"))]
+    rows = np.column_stack([TIME, Q, EFFORT / newton])
+    np.savetxt(tmp_path / "a.csv", rows, delimiter=",", header=",".join(names), comments="", fmt="%.9g")
+    found = draft_arm(tmp_path / "a.csv", tmp_path / "lift.urdf")
+    assert sum("writes currents" in guess and "`gain: unknown`" in guess for guess in found.guesses) == 2
+    for text in (found.text, found.text.replace("motion:", "gain: unknown\n  motion:")):
+        (tmp_path / "a.yaml").write_text(text, encoding="utf-8")
+        import_case([tmp_path / "a.csv"], tmp_path / "a.yaml", tmp_path / "case")
+        if text == found.text:
+            with pytest.raises(MachineError, match=r"this many times what the model needs.*`gain: unknown`"):
+                diagnose(*open_case(tmp_path / "case"))
+    causes = diagnose(*open_case(tmp_path / "case")).verdict.causes
+    dry = {c.actuator: c.parameters["force"] for c in causes if c.effect == "coulomb_friction"}
+    assert {j: (x.value, x.unit) for j, x in dry.items()} == {
+        "lift": (pytest.approx(8.0 / newton, rel=0.02), "eu"),
+        "swing": (pytest.approx(0.5 / newton, rel=0.02), "eu"),
+    }
+
+
 def test_axes_are_joints_by_name_by_number_or_in_their_order(tmp_path):
     model = tmp_path / "a.urdf"
     joints = [f"arm_joint_{i}" for i in range(1, 4)]
