@@ -202,7 +202,7 @@ def test_the_headline_says_what_named_causes_do_not_explain():
     """Arms were attributed at 46 % of the gap of a joint, and nothing said so; a remainder near the floor is none."""
     places = [left_at("a", 0.97, 8.0), left_at("b", 0.46, 7.0), left_at("c", 0.8, 12.0), left_at("d", 0.6, 1.5)]
     said = headline(verdict("attributed", causes=[FRICTION], places=places))
-    assert said.endswith("; not explained: 20 % at c, 12.0 times its floor; 54 % at b, 7.0 times its floor.")
+    assert said.endswith("; not explained: 20 % at c (12.0 times its floor) and 54 % at b (7.0 times its floor).")
     assert "not explained" not in headline(verdict("attributed", causes=[FRICTION], places=places[:1]))
 
 

@@ -16,9 +16,6 @@ from sher3_diagnosis.words import listed, lower, place, quantity, ratio_text, sh
 LEFT_OVER = 1.2
 """Rms that is left, over the floor, from which the headline says what it is. A convention of the words."""
 
-TOLD = 3
-"""Places named of which a part is not explained. A convention of the words."""
-
 TINY = 1e-300
 """Floor in place of none."""
 
@@ -147,9 +144,8 @@ def _not_explained(verdict: Verdict) -> str:
         if b.closure is not None and b.residual is not None and b.closure.value < 1.0 - REMAINDER
     ]
     far = sorted((x for x in left if x[0] > WITHIN), key=lambda x: -x[0])
-    each = [f"{share(rest)} at {place(p.actuator)}, {ratio_text(floors)} times its floor" for floors, rest, p in far]
-    more = f", and at {len(each) - TOLD} more" if len(each) > TOLD else ""
-    return f"; not explained: {'; '.join(each[:TOLD])}{more}" if each else ""
+    each = [f"{share(rest)} at {place(p.actuator)} ({ratio_text(floors)} times its floor)" for floors, rest, p in far]
+    return f"; not explained: {listed(each)}" if each else ""
 
 
 def _sentence(text: str) -> str:
