@@ -184,7 +184,7 @@ def named(column: str) -> Named:
     if unit == "degC" or set(words) & TEMPERATURE:
         return Named("temperature", "_".join(w for w in rest if w not in TEMPERATURE), unit or "degC")
     told = set(used) | (set(words) & (SECOND | CONTROLLERS | OUTPUTS))
-    signal = _signal(told, {w for w in table if w in ASKED | COMMAND})
+    signal = _signal(told, {w for w in table if w in (ASKED | COMMAND) - SHORT})
     if signal in ("position", "load") and unit in PLACELESS:
         signal = "effort" if unit in FORCES else None  # a bridge in mV, no place
     if signal == "position" and unit in VELOCITIES:

@@ -48,6 +48,7 @@ from sher3_machines.drafting.roles import together
         ("slideCurrent", "effort", "slide"),
         ("joint_states/elbow/position", "position", "elbow"),
         ("curr_data/Joint_1", "effort", "1"),
+        ("D/speed_rpm", "velocity", "d"),
         ("dataQ/c3", "position", "3"),
         ("excit_vel_record/c0", "velocity", "0"),
         ("run/Sensor1", None, "1"),

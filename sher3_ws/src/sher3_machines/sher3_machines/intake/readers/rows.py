@@ -10,6 +10,7 @@ from sher3_diagnosis.channel import Array
 
 from sher3_machines.intake.fields import TIME_UNITS
 from sher3_machines.intake.readers.cells import value_of
+from sher3_machines.intake.readers.machines import machines_of
 from sher3_machines.intake.units import UNITS, spelled
 
 MOST_TITLES = 50
@@ -90,6 +91,13 @@ def _one_table(rows: Rows, comma: bool, names: Sequence[str]) -> dict[str, Array
     header = _with_strokes(header)
     if rows and _are_units(rows[0]):
         header, rows = _with_units(header, rows[0]), rows[1:]
+    if header[0] != "c0" and (parts := machines_of(rows, comma)):
+        return {f"{part}/{n}": x for part, own in parts.items() for n, x in _numeric(header, own, comma).items()}
+    return _numeric(header, rows, comma)
+
+
+def _numeric(header: Sequence[str], rows: Rows, comma: bool) -> dict[str, Array]:
+    """Return the numeric columns (rows,) below the names of a header."""
     out: dict[str, Array] = {}
     for i, name in enumerate(header):
         x = _dated(_column([row[i] if i < len(row) else "" for row in rows], comma))
