@@ -120,8 +120,8 @@ class Watch:
         self.samples.setdefault(os.getpid(), Samples()).look(psutil.Process(), elapsed)
 
 
-def soak(seconds: float, rate: float, folder: Path) -> dict[str, Any]:
-    """Run the graph and return every figure."""
+def soak(seconds: float, rate: float, domain: int, folder: Path) -> dict[str, Any]:
+    """Run the graph in a ROS domain and return every figure."""
     from sher3_bringup.processes.up import run_graph
     from sher3_bringup.settings.run_settings import checked, parse_processes
     from sher3_bringup.surgeon.script import load_script
@@ -135,7 +135,7 @@ def soak(seconds: float, rate: float, folder: Path) -> dict[str, Any]:
         record=bag,
         processes=parse_processes(None, mock=True, record=True),
         duration=seconds,
-        domain=DOMAIN,
+        domain=domain,
         realtime=-1,
         patience="patient",
     )
@@ -145,13 +145,14 @@ def soak(seconds: float, rate: float, folder: Path) -> dict[str, Any]:
 
         return [script_node(script)]
 
-    before, watch = places(), Watch()
+    before, watch = places(domain), Watch()
     run_graph(settings, lambda text: print(text, file=sys.stderr), {"surgeon": surgeon}, watch)
     names = ["parent", *("+".join(process) for process in settings.processes), "surgeon", "terminal"]
     pids = [os.getpid(), *sorted(pid for pid in watch.samples if pid != os.getpid())]
     processes = {name: watch.samples[pid].verdict() for name, pid in zip(names, pids, strict=True)}
     nodes = {path.stem: json.loads(path.read_text())["statistics"] for path in sorted(statistics.glob("*.json"))}
-    return {"processes": processes, "nodes": nodes, "recording": recording(bag), "leftovers": left_behind(before)}
+    left = left_behind(before, domain)
+    return {"processes": processes, "nodes": nodes, "recording": recording(bag), "leftovers": left}
 
 
 def recording(bag: Path) -> dict[str, Any]:
@@ -172,7 +173,7 @@ def recording(bag: Path) -> dict[str, Any]:
     }
 
 
-def places() -> set[str]:
+def places(domain: int) -> set[str]:
     """Return what lies in /dev/shm, the Unix sockets of the mocks, and the UDP ports of the domain that are taken."""
     from sher3_bringup.settings.run_settings import MOCK_FORCE_PORT
 
@@ -180,19 +181,19 @@ def places() -> set[str]:
     found = {name for name in found if "fastrtps" in name or "fastdds" in name or "sher3" in name}
     unix = Path("/proc/net/unix")
     if unix.exists():
-        found |= {part for part in unix.read_text().split() if f"sher3-{DOMAIN}" in part}
+        found |= {part for part in unix.read_text().split() if f"sher3-{domain}" in part}
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
         try:
-            probe.bind(("127.0.0.1", MOCK_FORCE_PORT + 250 * DOMAIN))
+            probe.bind(("127.0.0.1", MOCK_FORCE_PORT + 250 * domain))
         except OSError:
             found.add("the port of the mock force sensor")
     return found
 
 
-def left_behind(before: set[str]) -> list[str]:
+def left_behind(before: set[str], domain: int) -> list[str]:
     """Return what was not there before: files, sockets, and child processes that still run."""
     children = [f"process {child.pid} {child.name()}" for child in psutil.Process().children(recursive=True)]
-    return sorted(places() - before) + children
+    return sorted(places(domain) - before) + children
 
 
 def faults(result: dict[str, Any], any_state: bool = False) -> list[str]:
@@ -241,13 +242,14 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--seconds", type=float, default=30.0)
     parser.add_argument("--rate", type=float, default=500.0)
+    parser.add_argument("--domain", type=int, default=DOMAIN, help="ROS domain id")
     parser.add_argument("--keep", type=Path, help="keep the bag as this folder")
     parser.add_argument("--any-state", action="store_true", help="a robot that stopped is no failure of the soak")
     parser.add_argument("--json", action="store_true")
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         result = {"seconds": options.seconds, "rate": options.rate, "load": os.getloadavg()}
-        result |= soak(options.seconds, options.rate, Path(folder))
+        result |= soak(options.seconds, options.rate, options.domain, Path(folder))
         if options.keep:
             shutil.move(Path(folder) / "bag", options.keep)
     result["faults"] = faults(result, options.any_state)

@@ -23,8 +23,8 @@ def soak():
     del sys.modules["soak"]
 
 
-def run(seconds: float, timeout: float) -> dict:
-    command = [sys.executable, str(SCRIPT), "--seconds", str(seconds), "--json", "--any-state"]
+def run(seconds: float, domain: int, timeout: float) -> dict:
+    command = [sys.executable, str(SCRIPT), "--seconds", str(seconds), "--json", "--any-state", "--domain", str(domain)]
     done = subprocess.run(
         command, env=child_environment(), capture_output=True, text=True, timeout=timeout, check=False
     )
@@ -46,14 +46,14 @@ def check(result: dict) -> None:
 
 @pytest.mark.graph
 @pytest.mark.flaky(reruns=2)
-def test_a_short_soak_leaves_nothing_behind():
-    check(run(6.0, 150.0))
+def test_a_short_soak_leaves_nothing_behind(domain):
+    check(run(6.0, domain, 150.0))
 
 
 @pytest.mark.slow
 @pytest.mark.graph
-def test_a_soak_of_two_minutes():
-    check(run(120.0, 280.0))
+def test_a_soak_of_two_minutes(domain):
+    check(run(120.0, domain, 280.0))
 
 
 def test_a_leak_is_seen_and_noise_is_not(soak):
@@ -76,17 +76,17 @@ def test_a_leak_is_seen_and_noise_is_not(soak):
     assert verdict(100.0 + wobble, threads=[3] * 300 + [4] * 300)
 
 
-def test_what_stays_behind_is_found(soak, tmp_path):
+def test_what_stays_behind_is_found(soak, domain):
     import socket
 
     from sher3_bringup.settings.run_settings import MOCK_FORCE_PORT
 
-    before = soak.places()
+    before = soak.places(domain)
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as taken:
-        taken.bind(("127.0.0.1", MOCK_FORCE_PORT + 250 * soak.DOMAIN))
+        taken.bind(("127.0.0.1", MOCK_FORCE_PORT + 250 * domain))
         child = subprocess.Popen([sys.executable, "-c", "input()"], stdin=subprocess.PIPE)
         try:
-            found = soak.left_behind(before)
+            found = soak.left_behind(before, domain)
         finally:
             child.communicate(b"\n")
     assert "the port of the mock force sensor" in found and any(str(child.pid) in what for what in found)
