@@ -120,16 +120,24 @@ def _named(tables: Tables, clock: str | None) -> dict[Place, tuple[str, str]]:
             if x.ndim == 1 or index is not None:
                 axis = "_".join(w for w in (what.axis, "" if index is None else str(index + 1)) if w)
                 found[name, index] = what.signal, axis
-    found |= _beside(found, tables)
-    vague = {p for p, (signal, _) in found.items() if signal == "position" and not _says_place(p[0])}
-    speeds = [p for p, (signal, _) in found.items() if signal == "velocity"]
-    again = {p for p, (signal, _) in found.items() if signal in ("position", "load") and not _says_place(p[0])}
-    again = {p for p in again if any(np.array_equal(values_of(p, tables), values_of(v, tables)) for v in speeds)}
-    found = {p: what for p, what in found.items() if p not in again}
-    grid = {p for p in vague if grows(x := values_of(p, tables)) and evenly(x)}
-    found = {p: what for p, what in found.items() if p not in grid}
+    return _without_vague(found | _beside(found, tables), tables)
+
+
+def _without_vague(found: Mapping[Place, tuple[str, str]], tables: Tables) -> dict[Place, tuple[str, str]]:
+    """Return the signals; of places that no word calls so, those that are no speed once more.
+
+    One that is measured alone goes too where it is an even grid, or where another one is called a place.
+    """
+    vague = {p: signal for p, (signal, _) in found.items() if signal in ("position", "load") and not _says_place(p[0])}
     clear = any(signal == "position" and p not in vague for p, (signal, _) in found.items())
-    return {p: what for p, what in found.items() if not (clear and p in vague)}
+    speeds = [values_of(p, tables) for p, (signal, _) in found.items() if signal == "velocity"]
+
+    def stays(p: Place) -> bool:
+        x = values_of(p, tables)
+        again = any(np.array_equal(x, v) for v in speeds)
+        return not again and (vague[p] == "load" or not (clear or (grows(x) and evenly(x))))
+
+    return {p: what for p, what in found.items() if p not in vague or stays(p)}
 
 
 def _beside(found: Mapping[Place, tuple[str, str]], tables: Tables) -> dict[Place, tuple[str, str]]:

@@ -7,14 +7,7 @@ import pytest
 from sher3_common import parse_yaml
 from sher3_machines import MachineError, import_case, load_description, open_case
 from sher3_machines.drafting.draft import draft
-
-TIME = np.arange(0.0, 4.0, 0.002)
-
-
-def written(tmp_path, header, *columns):
-    text = {"delimiter": ",", "header": header, "comments": "", "encoding": "utf-8"}
-    np.savetxt(tmp_path / "a.csv", np.column_stack(columns), **text)
-    return draft(tmp_path / "a.csv")
+from written_tables import TIME, written
 
 
 def test_the_draft_of_a_slide_can_be_imported(tmp_path):
@@ -129,13 +122,6 @@ def test_what_drives_and_what_comes_out_are_command_and_place(tmp_path, header, 
     assert "unit: rad" in written(tmp_path, header, TIME, np.cos(3.0 * TIME), np.sin(TIME)).text
 
 
-@pytest.mark.parametrize(("period", "unit"), [(1.001, "s"), (0.251, "s"), (5.0, "ms"), (12.5, "ms")])
-def test_stamps_with_thousandths_are_seconds(tmp_path, period, unit):
-    """A slow log in s is read to a ms; one in ms has no need of thousandths."""
-    found = written(tmp_path, "time,pos", np.round(30.0 + period * np.arange(200), 3), np.sin(np.arange(200) / 9.0))
-    assert f"unit: {unit}\n" in found.text
-
-
 def test_axes_named_x_y_z_slide_in_metres_or_millimetres(tmp_path):
     far = written(tmp_path, "t,X1_ActualPosition,X1_CommandPosition", TIME, 40.0 * np.sin(TIME), 40.0 * np.sin(TIME))
     near = written(tmp_path, "t,pos_x,ref_x", TIME, 2.0 * np.sin(TIME), 2.0 * np.sin(TIME))
@@ -243,22 +229,6 @@ def test_the_count_of_an_encoder_is_in_the_unit_of_its_column(tmp_path, unit, co
     assert "axis: one count of its encoder is 0.01 of the numbers recorded, its smallest step" in found.guesses
     (tmp_path / "a.yaml").write_text(found.text.replace("unit: rad", f"unit: {unit}"), encoding="utf-8")
     assert load_description(tmp_path / "a.yaml").axes[0].encoder_resolution == pytest.approx(count)
-
-
-def test_a_row_number_for_a_time_is_said(tmp_path):
-    found = written(tmp_path, "Time,angle", np.arange(len(TIME)), np.sin(TIME))
-    assert any("grows by one a row" in guess and "--rate" in guess for guess in found.guesses)
-
-
-def test_uneven_dates_of_today_and_columns_of_milliseconds_are_times(tmp_path):
-    """Stamps of a socket, uneven and with pauses, under a name that says nothing."""
-    steps = np.random.default_rng(0).exponential(0.005, len(TIME))
-    found = written(tmp_path, "at,angle", 1.6336e9 + np.cumsum(steps), np.sin(TIME))
-    assert any("'at', because it grows and reads as a date" in guess for guess in found.guesses)
-    with pytest.raises(MachineError, match="no column looks like a time"):
-        written(tmp_path, "at,angle", np.cumsum(steps), np.sin(TIME))
-    found = written(tmp_path, "milliseconds,angle", 1e3 * np.cumsum(steps), np.sin(TIME))
-    assert parse_yaml(found.text)["time"] == {"column": "milliseconds", "unit": "ms"}
 
 
 @pytest.mark.parametrize("header", ["t,q [rad]", "t,q_mrad"])
@@ -409,14 +379,3 @@ def test_what_was_moved_from_one_point_to_another_was_not_let_go(tmp_path):
     t = np.arange(1000) / 100.0
     np.savetxt(tmp_path / "a.csv", np.column_stack([t, np.tanh(t)]), delimiter=",", header="t,angle", comments="")
     assert "let go" not in draft(tmp_path / "a.csv").text
-
-
-def test_fractions_of_a_slow_clock_are_seconds_and_a_rate_is_no_clock(tmp_path):
-    t = np.arange(200) * 0.2333
-    np.savetxt(tmp_path / "a.csv", np.column_stack([t, np.sin(t)]), delimiter=",", header="t,angle", comments="")
-    assert parse_yaml(draft(tmp_path / "a.csv").text)["time"]["unit"] == "s"
-    np.savetxt(
-        tmp_path / "b.csv", np.column_stack([t, np.sin(t)]), delimiter=",", header="baud_rate,speed", comments=""
-    )
-    with pytest.raises(MachineError, match="no column looks like a time"):
-        draft(tmp_path / "b.csv")

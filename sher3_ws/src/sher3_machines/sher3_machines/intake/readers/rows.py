@@ -10,7 +10,7 @@ from sher3_diagnosis.channel import Array
 
 from sher3_machines.intake.fields import TIME_UNITS
 from sher3_machines.intake.readers.cells import value_of
-from sher3_machines.intake.readers.machines import machines_of
+from sher3_machines.intake.readers.long import machines_of
 from sher3_machines.intake.units import UNITS, spelled
 
 MOST_TITLES = 50

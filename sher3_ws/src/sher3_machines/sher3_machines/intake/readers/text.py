@@ -27,7 +27,7 @@ ENCODINGS = ("utf-8-sig", "cp1252")
 BYTE_ORDER_MARKS = (b"\xff\xfe", b"\xfe\xff")
 """What a text begins with that a spreadsheet saved as "Unicode": two bytes a letter."""
 FIRST = 50
-"""Rows that tell whether a comma is a decimal mark."""
+"""Rows that tell how the cells of a table are written: whether a comma is a decimal mark, whether cells are quoted."""
 DECIMAL_COMMA = re.compile(r"[+-]?\d+,\d+([eE][+-]?\d+)?")
 STAMPED = re.compile(r"(?m)^(\d{4}-\d\d-\d\d) (\d\d:\d\d:\d\d),(\d{3})[ \t]+")
 """What each line of a log of Python begins with: date, time of day, and milliseconds behind a comma."""
