@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 from sher3_description import load_robot
 from sher3_drivers.bus.link import open_link
+from sher3_drivers.canopen.master import CanopenMaster
 from sher3_drivers.errors import LinkError
 from sher3_drivers.mock.rig import LockstepRig
 from sher3_drivers.settings import default_settings
@@ -84,8 +85,15 @@ def make_rig(request, tmp_path, monkeypatch):
 
 
 @pytest.fixture
-def rig(make_rig):
-    """An enabled rig."""
+def rig(make_rig, monkeypatch):
+    """An enabled rig, its configuration written into the drives' dictionaries.
+
+    Transfers of a thousand objects take 60 ms, ten times what most tests do. Whoever tests them makes a rig.
+    """
     made = make_rig()
-    made.enable()
+    node = {name: drive.node for name, drive in made.mock.drives.items()}
+    with monkeypatch.context() as directly:
+        directly.setattr(CanopenMaster, "write", lambda _, name, address, value: node[name].write(address, value))
+        directly.setattr(CanopenMaster, "read", lambda _, name, address: node[name].values[address])
+        made.enable()
     return made

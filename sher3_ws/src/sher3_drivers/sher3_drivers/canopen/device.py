@@ -113,6 +113,12 @@ class CanopenDevice:
         self._on_write(address, value)
         self.values[address] = value
 
+    def write(self, address: Address, value: int) -> None:
+        """Take a value as an SDO download does, without its frames."""
+        kind = OBJECTS[address].kind
+        data = value.to_bytes(int(kind[1:]) // 8, "little", signed=kind in _SIGNED)
+        self._node.set_data(address.main, address.sub, data)
+
     def handle(self, can_id: int, data: bytes) -> None:
         """Serve an SDO request or NMT command; anything malformed is ignored, as a node on the bus does."""
         if can_id and len(data) != 8:

@@ -15,7 +15,7 @@ import numpy as np
 from sher3_diagnosis.channel import Array
 from sher3_machines.errors import MachineError
 
-from sher3_static.arm.frames import fitted_view
+from sher3_static.arm.frames import fitted_view, started_view
 from sher3_static.arm.kinematics import Arm, postures
 from sher3_static.arm.sight import Sight
 from sher3_static.arm.view import ArmView
@@ -31,6 +31,8 @@ CLEARER = 0.1
 that is off does."""
 ALIKE = 1.1
 """Errors within this ratio are alike: of two such ways to count the one that changes fewer joints is taken."""
+NEAR = 3.0
+"""Errors at the linear start of the frames within this ratio may change places when the frames are fitted."""
 PARALLEL = 1e-3
 """Largest sine between the axes of two joints whose turns add up."""
 
@@ -53,12 +55,14 @@ def counted_view(
     """
     some = np.linspace(0, len(recorded) - 1, min(POSTURES, len(recorded))).astype(int)
 
-    def missed(counts: Array) -> float:
+    def missed(counts: Array, fitted: bool) -> float:
+        q = recorded[some] @ counts.T
         try:
-            view = fitted_view(arm, recorded[some] @ counts.T, measured[some], run[some], floor, sight)
+            if fitted:
+                return _off(fitted_view(arm, q, measured[some], run[some], floor, sight), measured[some])
+            return _off(started_view(arm, q, measured[some], run[some], sight), measured[some])
         except (MachineError, np.linalg.LinAlgError):
             return np.inf
-        return _off(view, measured[some])
 
     stated = np.eye(len(arm.names))
     view = fitted_view(arm, recorded, measured, run, floor, sight)
@@ -66,7 +70,9 @@ def counted_view(
     if (before := _off(view, measured)) < WRONG * travel:
         return view, stated
     ways = list(_ways(arm))
-    left = np.array([missed(way) for way in ways])
+    start = np.array([missed(way, fitted=False) for way in ways])
+    ways = [ways[i] for i in np.flatnonzero(start <= NEAR * start.min())]
+    left = np.array([missed(way, fitted=True) for way in ways])
     alike = np.flatnonzero(left <= ALIKE * left.min())
     best = min(alike, key=lambda i: (np.abs(ways[i] - stated).sum(), left[i]))
     if left[best] > CLEARER * before:

@@ -39,6 +39,12 @@ def set_up(view: ArmView, numbers: str) -> Array:
     return np.concatenate([columns, zeros], axis=2)
 
 
+def started_view(arm: Arm, q: Array, measured: Array, run: Labels, sight: Sight) -> ArmView:
+    """Return nominal postures with frames from linear equations: within a degree where arm and readings agree."""
+    at = postures(arm, q)
+    return ArmView(np.zeros(len(q)), arm, q, at, *sight.start(at.tip, measured, run), sight)
+
+
 def fitted_view(arm: Arm, q: Array, measured: Array, run: Labels, floor: Array, sight: Sight) -> ArmView:
     """Return nominal postures with the frames that fit all readings best.
 
@@ -53,8 +59,7 @@ def fitted_view(arm: Arm, q: Array, measured: Array, run: Labels, floor: Array, 
     Raises:
         MachineError: the postures do not tell the frames.
     """
-    at = postures(arm, q)
-    view = ArmView(np.zeros(len(q)), arm, q, at, *sight.start(at.tip, measured, run), sight)
+    view = started_view(arm, q, measured, run, sight)
     for _ in range(ROUNDS):
         columns = set_up(view, "identified") / floor[:, None]
         columns = columns.reshape(-1, columns.shape[2])
@@ -63,7 +68,7 @@ def fitted_view(arm: Arm, q: Array, measured: Array, run: Labels, floor: Array, 
         step[list(sight.identified)] = np.linalg.lstsq(columns, error, rcond=1e-9)[0][: len(sight.identified)]
         base = transform(step[3:6], Rotation.from_rotvec(step[:3]).as_matrix()) @ view.base
         body = view.body @ transform(step[9:], Rotation.from_rotvec(step[6:9]).as_matrix())
-        view = ArmView(view.warmth, arm, q, at, base, body, sight)
+        view = ArmView(view.warmth, arm, q, view.postures, base, body, sight)
     values = np.linalg.svd(columns / np.linalg.norm(columns, axis=0), compute_uv=False)
     if values[-1] < AMBIGUOUS * values[0]:
         raise MachineError("the postures do not tell the frames", value=f"{values[-1]:.3g}", remedy="turn the tip more")
