@@ -25,7 +25,7 @@ from sher3_machines.drafting.guesses import (
     time_unit,
     travel,
 )
-from sher3_machines.drafting.names import COUNTING, DRIVING, POSITION, named, words_of
+from sher3_machines.drafting.names import COUNTING, DRIVING, LENGTHS, POSITION, named, words_of
 from sher3_machines.drafting.roles import DEMANDED, SIGNALS, Place, moves, once, paired, placed, together, values_of
 from sher3_machines.drafting.speeds import checked_by_speed
 from sher3_machines.errors import MachineError
@@ -46,6 +46,7 @@ NEWTONS = ("N", "kN", "mN", "gf", "kgf", "lbf", "N*m", "mN*m")
 """Units of forces and torques that add up."""
 JOINT_STATES, OF_ROS = "joint_states/", "joint states of ROS are in rad and m"
 """Topic whose messages are in rad and m (REP-103), and what is said of it."""
+ELECTRICAL = "its name says so, of electrical turns: `factor` is one over the pairs of poles"
 SLIDING_AXES = {"x", "y", "z", "cart", "carriage", "slide", "slider"}
 """Names of axes that slide."""
 GEARED = 1.5
@@ -128,16 +129,20 @@ def drafted(path: Path, tables: Tables, rate: float | None, guesses: list[str], 
     for drafted_axis, signals in () if astray else zip(axes, groups.values(), strict=True):
         _let_go(drafted_axis, values_of(signals["position"], tables), guesses, alone=len(axes) == 1)
     checked_by_speed(time, axes, tables, None if clock is None else tables[clock], guesses)
+    empty = ", ".join(repr(n) for n, x in tables.items() if not len(x))
+    closed = [f"no array in {empty}: an object of MATLAB is opened there alone"] if empty else []
     if not axes:
+        most = max(map(len, tables.values()))
         raise MachineError(
             f"{path}: no column looks like a position",
-            value=", ".join([n for n, x in tables.items() if len(x) == max(map(len, tables.values()))][:LISTED]),
+            value="; ".join([", ".join([n for n, x in tables.items() if len(x) == most][:LISTED]), *closed]),
             limit="names with position, pos, q, angle, encoder",
             remedy="give their names in order, an empty one for what is no signal: --names t,position,,effort; or "
             "write the description by hand (`column: c1`; `column: data, index: 1` of a matrix); a force sensor by "
             "itself is `kind: force_sensor`, postures with measured poses are `kind: arm`; levels and temperatures are "
             "no machine",
         )
+    guesses += closed
     if len(axes) > 1:
         guesses.extend(f"{n!r} drives one of these axes, and nothing says which: write it there" for n in astray)
     if left:
@@ -150,12 +155,12 @@ def _spelt(place: Place, axis: str) -> object:
     """Return what places in one unit share: a table, the words of the name but the axis', and whether it slides."""
     name = place[0]
     words = frozenset(words_of(bare(name))) - set(named(name).axis.split("_")) - set(axis.split("_"))
-    return table_of(name), words, _slides(axis)
+    return table_of(name), words, _slides(axis, name)
 
 
-def _slides(axis: str) -> bool:
-    """Return whether the name of an axis says that it slides."""
-    return bool(set(axis.split("_")) & SLIDING_AXES)
+def _slides(axis: str, place: str) -> bool:
+    """Return whether the name of an axis says that it slides, or that of its place that it is a length."""
+    return bool(set(axis.split("_")) & SLIDING_AXES or set(words_of(bare(place))) & LENGTHS)
 
 
 def _unit_of(place: Place, axis: str, x: Array, reached: float) -> tuple[str, float, str]:
@@ -165,11 +170,12 @@ def _unit_of(place: Place, axis: str, x: Array, reached: float) -> tuple[str, fl
     """
     what = named(place[0])
     if what.signal == "velocity":
-        return (what.unit, 1.0, NAMED) if what.unit in VELOCITIES else ("rad/s", 1.0, "it is a velocity")
+        said = ELECTRICAL if "erpm" in place[0].lower() else NAMED
+        return (what.unit, 1.0, said) if what.unit in VELOCITIES else ("rad/s", 1.0, "it is a velocity")
     if what.unit is None and JOINT_STATES in place[0]:
-        return ("m" if _slides(axis) else "rad"), 1.0, OF_ROS
+        return ("m" if _slides(axis, place[0]) else "rad"), 1.0, OF_ROS
     counted = what.unit is None and bool((x == np.round(x)).all()) and bool(set(words_of(bare(place[0]))) & COUNTING)
-    return position_unit("count" if counted else what.unit, x, _slides(axis), reached)
+    return position_unit("count" if counted else what.unit, x, _slides(axis, place[0]), reached)
 
 
 def by_motion(label: str, signals: Mapping[str, Place], tables: Tables, guesses: list[str]) -> Mapping[str, Place]:

@@ -211,7 +211,7 @@ def position_unit(unit: str | None, x: Array, slides: bool = False, reached: flo
         return "count", factor, f"{why}; `factor` is a placeholder: 2^{bits} counts a turn"
     if slides:
         unit = "mm" if largest > WIDEST_ROOM else "m"
-        return unit, 1.0, f"its axis is named as one that slides, and values reach {largest:.4g}"
+        return unit, 1.0, f"its name says that it slides, and values reach {largest:.4g}"
     largest = max(largest, reached)
     if largest > TOO_FAR:
         return "deg", 1.0, f"values reach {largest:.4g}"

@@ -29,7 +29,7 @@ POSITION = vocabulary(
 COUNTING = vocabulary("encoder enc")
 """Words for a place that, where it is whole all along, is in counts."""
 VELOCITY = vocabulary(
-    "velocity velocities vel speed spd qd dq omega qdot qvel gyro drehzahl geschwindigkeit rate dot thetadot xdot "
+    "velocity velocities vel velo speed spd qd dq omega qdot qvel gyro drehzahl geschwindigkeit rate dot thetadot xdot "
     "velocidad velocidade vitesse velocità"
 )
 EFFORT = vocabulary(
@@ -52,6 +52,8 @@ MEASURED = vocabulary(
     "actual act measured meas present est estimate estimated ist rist feedback fb response antwort respuesta resposta "
     "réel réelle reel reelle mesuré mesurée medido medida misurato"
 )
+HELD = vocabulary("load")
+"""Words for a second place that are a place only beside the first: alone they are forces, of cells in counts."""
 SECOND = vocabulary(
     "load output link ql thetal second secondary se scale abtrieb maßstab massstab glasmaßstab glasmassstab tracker "
     "laser interferometer vicon mocap optitrack qualisys gt truth groundtruth"
@@ -59,9 +61,11 @@ SECOND = vocabulary(
 IGNORED = vocabulary(
     "acceleration acc accel qdd ddq qddot ddot thetaddot xddot error err erro bus supply battery versorgung power "
     "leistung energy tcp pose cartesian ee eef execution main frequency freq frequenz accelerometer "
-    "momentum deviation ratio"
+    "momentum deviation ratio batt vbat vbus vcc vdd air wind airspeed windspeed ff feedforward"
 )
-"""What is no signal of an axis: derivatives, momenta, supplies, frequencies, and what the hand of an arm does."""
+"""What is no signal of an axis: derivatives, momenta, supplies, frequencies, the air, what a controller adds unasked,
+and what the hand of an arm does.
+"""
 TEMPERATURE = vocabulary("temperature temperatures temp temps temperatur")
 APPLIED = vocabulary("hung applied external disturbance weight brake bremsmoment last")
 """A force from outside that is known, where the column has the unit of one."""
@@ -94,9 +98,12 @@ SHARES = ("%", "1")
 PLACES = ("m", "cm", "mm", "um", "rad", "mrad", "deg", "arcmin", "arcsec", "rev", "count")
 """Units of a position."""
 CLEAR = vocabulary(
-    "deg degree degrees rad radians rpm mm ms msec millis milliseconds us usec micros microseconds sec secs seconds"
+    "deg degree degrees rad radians rev revs rpm mm ms msec millis milliseconds us usec micros microseconds "
+    "sec secs seconds"
 )
 """Words that are nothing but a unit: a name by themselves, `ms,deg,rpm`, or at its end, `speedRpm`."""
+OF_SPEEDS = vocabulary("rpm erpm rps dps")
+"""Units that no other word is spelt like, wherever they stand: `motorRPM_1`, `rpm_value`."""
 DRIVING = vocabulary("motor mot qm thetam antrieb drive schrittzähler steps schritte")
 """Words for the position on the side of the drive, of an axis with two positions; the other one is the load's."""
 WORDS = POSITION | VELOCITY | EFFORT | CURRENT | COMMAND | ASKED | MEASURED | IGNORED
@@ -106,6 +113,8 @@ NAMELESS = "c"
 """Word of the columns of a table without a header: c0, c1, ..."""
 SLIDING = vocabulary("position pos posn x y z dist distance displacement displ stroke gap hub weg verschiebung")
 """Words beside which an `m` at the end is a metre: `cart_position_m`; `q_m` is an angle of a motor."""
+LENGTHS = vocabulary("dist distance displacement displ stroke hub weg verschiebung")
+"""Words for a place that is a length, whatever its axis is called."""
 PER_SECOND = re.compile(r"(?P<name>.+)_(?P<unit>deg|rad|m|mm)(_|p|_per_)s")
 """A velocity whose name ends in its unit: `gyro_deg_s`, `omega_rad_per_s`."""
 CAPITAL = re.compile(r"(?<=[a-z])(?=[A-Z][a-z]+$)")
@@ -160,6 +169,8 @@ def named(column: str) -> Named:
     last = NUMBERED.sub("", last)
     known, unit = bare_and_unit(last)
     words = words_of(known)
+    unit = unit or next((spelled(w) for w in words if w in OF_SPEEDS), None)
+    words = [w for w in words if w not in OF_SPEEDS]
     if ACCELERATION.fullmatch(known):
         return Named(None, "", unit)
     if tables and words and set(words) <= READING:  # a channel of a control system: its table has the name

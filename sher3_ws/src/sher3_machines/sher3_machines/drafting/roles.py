@@ -19,12 +19,14 @@ from sher3_machines.drafting.names import (
     DIRECTIONS,
     DRIVING,
     FORCES,
+    HELD,
     IGNORED,
     MEASURED,
     MODELLED,
     PARTS,
     PLACES,
     POSITION,
+    SECOND,
     TURNING,
     TWOFOLD,
     VELOCITY,
@@ -33,6 +35,7 @@ from sher3_machines.drafting.names import (
     vocabulary,
     words_of,
 )
+from sher3_machines.drafting.strangers import without_strangers
 from sher3_machines.intake.spelling import bare, table_of
 from sher3_machines.intake.tables import SAMPLES, Tables
 from sher3_machines.intake.units import UNITS
@@ -120,6 +123,7 @@ def _named(tables: Tables, clock: str | None) -> dict[Place, tuple[str, str]]:
             if x.ndim == 1 or index is not None:
                 axis = "_".join(w for w in (what.axis, "" if index is None else str(index + 1)) if w)
                 found[name, index] = what.signal, axis
+    found = without_strangers(found, tables, clock)
     return _without_vague(found | _beside(found, tables), tables)
 
 
@@ -141,13 +145,14 @@ def _without_vague(found: Mapping[Place, tuple[str, str]], tables: Tables) -> di
 
 
 def _beside(found: Mapping[Place, tuple[str, str]], tables: Tables) -> dict[Place, tuple[str, str]]:
-    """Return places along x with those along y that stand beside them, where no `u` drives what comes out as `y`."""
+    """Return places along x with those along y, and z, beside them, where no `u` drives what comes out as `y`."""
     out: dict[Place, tuple[str, str]] = {}
     for (name, index), (signal, axis) in found.items():
-        along = ALONG_X.sub(lambda match: chr(ord(match[0]) + 1), name)
-        if signal == "position" and along in tables.keys() - {name} and tables[along].shape == tables[name].shape:
+        others = {d: ALONG_X.sub(lambda match, k=k: chr(ord(match[0]) + k), name) for k, d in enumerate("xyz")}
+        along = {n: d for d, n in others.items() if n in tables and tables[n].shape == tables[name].shape}
+        if signal == "position" and {"x", "y"} <= set(along.values()):
             rest = [w for w in axis.split("_") if w and w != "x"]
-            out |= {(n, index): (signal, "_".join([*rest, d])) for n, d in ((name, "x"), (along, "y"))}
+            out |= {(n, index): (signal, "_".join([*rest, d])) for n, d in along.items()}
     driven = any(OF_INPUT.search(bare(name)) for name in tables)
     return {} if driven else out
 
@@ -263,11 +268,13 @@ def with_speeds(placed: Mapping[Place, tuple[str, str]]) -> dict[Place, tuple[st
 def with_loads(placed: Mapping[Place, tuple[str, str]]) -> dict[Place, tuple[str, str]]:
     """Return the signals in which the position of an axis that no drive moves is its `load`, beside the driven ones.
 
-    Where trackers and scales alone were recorded, what they read stays a position.
+    Where trackers and scales alone were recorded, what they read stays a position; a load alone is a force.
     """
     out = dict(placed)
     if all(signal != "position" for signal, _ in placed.values()):
-        return {p: ("position" if signal == "load" else signal, axis) for p, (signal, axis) in placed.items()}
+        alone = {p: set(words_of(bare(p[0]))) & (POSITION | SECOND - HELD) or named(p[0]).unit for p in placed}
+        kept = {p: what for p, what in placed.items() if what[0] != "load" or alone[p]}
+        return {p: ("position" if signal == "load" else signal, axis) for p, (signal, axis) in kept.items()}
     for axis in {axis for _, axis in placed.values()}:
         places = [p for p, found in placed.items() if found == ("position", axis)]
         driven = [p for p in places if set(words_of(bare(p[0]))) & DRIVING]

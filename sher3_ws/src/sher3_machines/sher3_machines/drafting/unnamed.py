@@ -7,7 +7,7 @@ name; the draft then speaks of the columns as the file has them.
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from itertools import permutations
 from typing import Any
 
@@ -15,7 +15,7 @@ import numpy as np
 from sher3_diagnosis.channel import Array
 
 from sher3_machines.drafting.guesses import CROSSINGS, counts_rows, evenly, grows, swings_to_rest
-from sher3_machines.drafting.names import bare_and_unit
+from sher3_machines.drafting.names import TELLING, bare_and_unit, named, tells_time, words_of
 from sher3_machines.errors import MachineError
 from sher3_machines.intake.mending.motion import AGREES, FOLLOWS, speed_of, speed_ratio
 from sher3_machines.intake.spelling import bare, table_of
@@ -88,7 +88,8 @@ def _in_unit(name: str, column: str) -> str:
 def named_by_motion(tables: Tables, rate: float | None, guesses: list[str]) -> dict[Place, str]:
     """Return names for columns that have none: the time grows evenly, and a position is the integral of its speed.
 
-    Where no column is the speed of another, a position is what follows a reference later, or what swings to rest alone;
+    A title that says nothing of a signal is none, and a speed alone tells its place there. Elsewhere, where no column
+    is the speed of another, a position is what follows a reference later, or what swings to rest alone;
     one more column beside a place and its speed that balances the motion is what drives. Several places with their
     speeds are blocks of a robot's joints. Each table of a folder is told by itself. Empty where there is no time, or
     where the motion tells nothing.
@@ -102,8 +103,13 @@ def named_by_motion(tables: Tables, rate: float | None, guesses: list[str]) -> d
 
 def clock_among(tables: Tables) -> str:
     """Return the column without a name that is the time, as `data[0]`; empty where none is."""
-    clock, _, _ = _timed(tables, None)
-    return said(clock) if clock else ""
+    clock, _, columns = _timed(tables, None)
+    return said(clock) if clock and not _titled([clock, *columns]) else ""
+
+
+def _titled(places: Iterable[Place]) -> bool:
+    """Return whether one of some columns has a title of its own."""
+    return any(index is None and not WITHOUT.fullmatch(bare(name)) for name, index in places)
 
 
 def _told(tables: Tables, rate: float | None, guesses: list[str]) -> dict[Place, str]:
@@ -118,17 +124,20 @@ def _told(tables: Tables, rate: float | None, guesses: list[str]) -> dict[Place,
     asked = [r for r in places if any(_follows(moving[x], moving[r]) for x in places if x is not r)]
     asked = asked if 2 * len(asked) == len(places) else []  # each place has its own
     found = [(x, v) for x, v in found if x not in asked]
+    titled = _titled(columns)
     least = len({x for x, _ in found})  # joints that move
-    for joints in range(least, len(columns) // 2 + 1) if least > 1 else ():
+    for joints in range(least, len(columns) // 2 + 1) if least > 1 and not titled else ():
         if blocks := named_by_blocks(tables, rate, joints, guesses):
             return blocks
-    followers = [] if found else [(x, r) for x, r in permutations(moving, 2) if _follows(moving[x], moving[r])]
+    followers = (
+        [] if found or titled else [(x, r) for x, r in permutations(moving, 2) if _follows(moving[x], moving[r])]
+    )
     if found or followers:
         (x, other), role = (found or followers)[0], VELOCITY if found else REFERENCE
         why = "its speed" if found else "what it follows"
         guesses.append(f"{said(x)} is a position, because {said(other)} is {why}; nobody named them")
         named = {x: POSITION, other: role} | ({asked[0]: REFERENCE} if len(asked) == 1 else {})
-    elif len(moving) == 1 and swings_to_rest(*moving.values()):
+    elif len(moving) == 1 and not titled and swings_to_rest(*moving.values()):
         (x,) = moving
         guesses.append(f"{said(x)} is a position, because it swings to rest and nothing else moves; nobody named it")
         named = {x: POSITION}
@@ -140,7 +149,8 @@ def _told(tables: Tables, rate: float | None, guesses: list[str]) -> dict[Place,
         named[left.pop()] = EFFORT
     rest = ", ".join(map(said, left))
     guesses.extend([f"not told by the motion: {rest}; name them: --names t,q,..."] if rest else [])
-    return {**({clock: "time"} if clock else {}), **named}
+    told = {(name, None): name for name in tables if titled and (name, None) not in columns}
+    return {**({clock: "time"} if clock else {}), **named, **told}
 
 
 def _drives(t: Array, x: Array, v: Array, force: Array) -> bool:
@@ -230,15 +240,22 @@ def _timed(tables: Tables, rate: float | None) -> tuple[Place | None, Array, dic
 
     Without a clock and a rate there are no columns.
     """
-    unnamed = [place for place in places_of(tables) if place[1] is not None or WITHOUT.fullmatch(bare(place[0]))]
-    columns = {place: values_at(place, tables) for place in unnamed}
-    clocks = [p for p, x in columns.items() if grows(x) and evenly(x)] if rate is None else []
+    columns = {
+        place: values_at(place, tables) for place in places_of(tables) if place[1] is not None or _mute(place[0])
+    }
+    clocks = [p for p, x in columns.items() if grows(x) and (evenly(x) or tells_time(p[0]))] if rate is None else []
     clock = next((p for p in clocks if not counts_rows(columns[p])), clocks[0] if clocks else None)
     if not columns or (clock is None and rate is None):
         return None, np.zeros(0), {}
     t = columns.pop(clock) if clock else np.arange(len(next(iter(columns.values())))) / float(rate or 1.0)
     ahead = np.concatenate([[True], np.diff(t) > 0.0])
     return clock, t[ahead], {p: x[ahead] for p, x in columns.items()}
+
+
+def _mute(name: str) -> bool:
+    """Return whether a name says nothing of a signal, if only that it is the time."""
+    said = set(words_of(bare_and_unit(bare(name))[0]))
+    return bool(WITHOUT.fullmatch(bare(name))) or tells_time(bare(name)) or not (said & TELLING or named(name).signal)
 
 
 def _is_speed(t: Array, x: Array, v: Array) -> bool:

@@ -26,7 +26,7 @@ KNOWN: Mapping[str, tuple[float, str]] = {
     "rad/s": (1.0, "rad/sec rads/s"),
     "deg/s": (math.pi / 180.0, "°/s dps degrees/s deg/sec"),
     "rev/s": (2.0 * math.pi, "turns/s turn/s rps Hz"),
-    "rpm": (math.pi / 30.0, "r/min rev/min U/min min-1 1/min"),
+    "rpm": (math.pi / 30.0, "r/min rev/min U/min min-1 1/min erpm eRPM"),
     "N": (1.0, "newton newtons"),
     "kN": (1e3, ""),
     "mN": (1e-3, ""),

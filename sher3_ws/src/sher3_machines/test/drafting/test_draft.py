@@ -379,3 +379,9 @@ def test_what_was_moved_from_one_point_to_another_was_not_let_go(tmp_path):
     t = np.arange(1000) / 100.0
     np.savetxt(tmp_path / "a.csv", np.column_stack([t, np.tanh(t)]), delimiter=",", header="t,angle", comments="")
     assert "let go" not in draft(tmp_path / "a.csv").text
+
+
+def test_a_distance_slides_whatever_its_axis_is_called(tmp_path):
+    t = np.arange(0.0, 5.0, 0.05)
+    np.savetxt(tmp_path / "a.csv", np.column_stack([t, 0.3 * np.sin(t)]), delimiter=",", header="t,dist", comments="")
+    assert "motion: linear" in draft(tmp_path / "a.csv").text

@@ -144,3 +144,33 @@ def test_a_word_for_a_torque_or_a_target_is_told_by_what_the_place_does(late):
         tables = {f"{word}_{i}": x[i] for word, x in (("q", q), ("tq", said)) for i in range(2)}
         groups, _ = together(placed(tables, None, []))
         assert groups == {str(i): {"position": (f"q_{i}", None), signal: (f"tq_{i}", None)} for i in range(2)}
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_matrix_that_holds_other_columns_is_a_table_and_no_joints(seed):
+    draw = np.random.default_rng(seed)
+    x, zero = draw.uniform(1.0, 20.0) * np.sin(draw.uniform(3.0, 9.0) * T), draw.uniform(5.0, 20.0)
+    v = np.gradient(x, T)
+    force = 0.7 * v + 60.0 * np.sign(v) + draw.normal(size=len(T))
+    tables = {"tout": T, "dist": x + zero, "dist1": np.column_stack([T, x]), "vel1": np.column_stack([x, v])}
+    order = draw.permutation(3)
+    tables["x_F"] = np.column_stack([x, v, force])[:, order]
+    (found,) = together(placed(tables, "tout", []))[0].values()
+    last = list(order).index(2)
+    assert found == {"position": ("dist", None), "velocity": ("vel1", 1), "effort": ("x_F", last)}
+
+
+def test_a_place_that_repeats_what_was_asked_of_it_is_a_joint():
+    q = np.column_stack([np.sin(T), np.cos(T)])
+    groups, _ = together(placed({"t": T, "q": q, "q_ref": q.copy()}, "t", []))
+    assert [set(signals) for signals in groups.values()] == [{"position", "reference"}] * 2
+
+
+def test_loads_alone_are_cells_and_a_scale_alone_is_a_place():
+    assert signals_of("load1", "load2", "motorI") == {}
+    assert signals_of("load [mm]")[""] == {"position": "load [mm]"}
+    assert signals_of("laser")[""] == {"position": "laser"}
+
+
+def test_z_beside_x_and_y_is_a_direction_too():
+    assert set(signals_of("x", "y", "z")) == {"x", "y", "z"}

@@ -32,6 +32,31 @@ def test_place_and_speed_are_told_by_the_motion_in_any_order(tmp_path, seed):
 
 
 @pytest.mark.parametrize("seed", range(4))
+def test_titles_that_say_nothing_are_none_where_one_is_the_speed_of_another(tmp_path, seed):
+    """As of a haptic device, in one letter each, or of a language that nobody here speaks; others keep their titles."""
+    t, q, v, noise = swing(seed).T
+    titles = [["t", "P", "V", "Fe"], ["czas", "kąt", "pochodna", "zakłócenie"]][seed % 2]
+    tables = np.column_stack([t, q, v, noise])
+    kept = np.random.default_rng(seed).permutation(4)
+    head = ",".join([titles[i] for i in kept] + ["temperature"])
+    np.savetxt(tmp_path / "a.csv", np.column_stack([tables[:, kept], noise]), delimiter=",", header=head, comments="")
+    described = parse_yaml(draft_of(tmp_path / "a.csv").text)
+    signals = described["axes"][0]["signals"]
+    assert described["time"]["column"] == titles[0]
+    assert [signals[k]["column"] for k in ("position", "velocity")] == titles[1:3]
+    assert set(signals) == {"position", "velocity", "temperature"}
+
+
+def test_titles_that_say_nothing_are_no_places_by_following_each_other(tmp_path):
+    t = np.arange(2000) / 100.0
+    level = np.sign(np.sin(t))
+    late = np.concatenate([level[:30], level[:-30]])
+    np.savetxt(tmp_path / "a.csv", np.column_stack([t, level, late]), delimiter=",", header="t,ch1,ch2", comments="")
+    with pytest.raises(MachineError, match="levels and temperatures are no machine"):
+        draft_of(tmp_path / "a.csv")
+
+
+@pytest.mark.parametrize("seed", range(4))
 def test_what_balances_the_motion_is_the_effort_in_each_table_of_a_folder(tmp_path, seed):
     draw = np.random.default_rng(seed)
     for joint in ("hip", "knee"):

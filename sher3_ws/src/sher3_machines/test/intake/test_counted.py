@@ -79,3 +79,15 @@ def test_rows_that_even_stamps_hide_are_counted(seed, every):
     found = counted_stamps(PERIOD * np.arange(len(true)), x, v + 1e-3 * rng.normal(size=v.shape))
     assert found is not None
     assert np.abs(np.diff(found) - np.diff(true)).mean() < 0.01 * PERIOD
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_speeds_that_are_differences_of_the_places_say_nothing_of_the_clock(seed):
+    """Of a motor that is reversed within a row, logged ten times a second, and then stands."""
+    rng = np.random.default_rng(seed)
+    t = np.cumsum(0.1 + 1e-3 * rng.random(260))
+    told = np.repeat(rng.uniform(5.0, 20.0, 4) * [1.0, 2.0, -2.0, 0.0], [40, 40, 45, 135])
+    speed = told + np.concatenate([[0.0], 0.1 * np.diff(told)])
+    x = np.concatenate([[0.0], np.cumsum(speed[1:] * np.diff(t))])
+    v = np.concatenate([[0.0], np.diff(x) / np.diff(t)])
+    assert counted_stamps(t, x[:, None], v[:, None]) is None

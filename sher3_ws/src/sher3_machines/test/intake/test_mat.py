@@ -1,11 +1,13 @@
 """MATLAB files: structs, class objects, and files that would take their reader down."""
 
 import subprocess
+from pathlib import Path
 
 import numpy as np
 import pytest
 import scipy.io
 from sher3_machines import MachineError
+from sher3_machines.drafting.draft import drafted
 from sher3_machines.intake.readers import mat, native
 from sher3_machines.intake.tables import read_tables
 
@@ -34,6 +36,16 @@ def test_a_file_without_an_array_says_what_only_matlab_opens(tmp_path):
     scipy.io.savemat(tmp_path / "a.mat", {"note": "text"})
     with pytest.raises(MachineError, match="writetable"):
         read_tables(tmp_path / "a.mat")
+
+
+def test_a_class_object_is_a_column_without_rows_that_the_draft_names():
+    opaque = np.zeros((1,), dtype=[("_TypeSystem", object), (mat.CLASS, object), ("_ObjectMetadata", object)])
+    found = mat.flatten("", np.array([(np.arange(3.0), opaque)], dtype=[("t", object), ("ans", object)]))
+    assert {name: len(x) for name, x in found.items()} == {"t": 3, "ans": 0}
+    t = np.arange(0.0, 5.0, 0.01)
+    guesses: list[str] = []
+    drafted(Path("a.mat"), {"t": t, "q": np.sin(3.0 * t), "ans": np.zeros(0)}, None, guesses)
+    assert any("no array in 'ans'" in guess for guess in guesses)
 
 
 def test_cells_are_numbered(tmp_path):

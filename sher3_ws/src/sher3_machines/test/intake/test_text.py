@@ -212,3 +212,9 @@ def test_a_log_of_python_has_its_stamp_in_one_column(tmp_path, mark):
     found = tables(tmp_path, rows)
     assert list(found) == ["c0", "c1", "c2"] and found["c1"][4] == 2.0
     assert np.diff(found["c0"]) == pytest.approx(1.0)
+
+
+def test_times_of_day_are_stamps(tmp_path):
+    (tmp_path / "a.csv").write_text("Time;Distance\n9:59:59.900;15.86\n10:00:00,025;15.84\n10:00:00.100;15.79\n")
+    found = read_tables(tmp_path / "a.csv")
+    assert np.allclose(np.diff(found["Time"]), [0.125, 0.075]) and found["Time"][0] == 35999.9

@@ -37,7 +37,7 @@ def loads_of(tables: Tables) -> tuple[str, str] | None:
     A reading is called otherwise than the loads, where one follows them. Of several columns for either, as the load
     that was meant and the one that was laid on, those two are taken that go together best, in a unit where one has it.
     """
-    flat = {n: x for n, x in tables.items() if x.ndim == 1 and np.isfinite(x).mean() >= 1.0 - LACKING}
+    flat = {n: x for n, x in tables.items() if x.ndim == 1 and len(x) and np.isfinite(x).mean() >= 1.0 - LACKING}
     if any(tells_time(n) for n in tables) or {"force", "torque"} <= wrench_of(tables).keys():
         return None
     moved = any(named(n).signal in ("position", "velocity") and np.ptp(x) > 0.0 for n, x in flat.items())

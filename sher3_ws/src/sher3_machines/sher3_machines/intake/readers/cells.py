@@ -9,6 +9,8 @@ from sher3_common import parse_json
 
 DATE_TIME = re.compile(r"\d{4}[-/]\d\d[-/]\d\d[T ]\d\d:\d\d(:\d\d([.,]\d+)?)?(Z|[+-]\d\d:?\d\d)?")
 """ISO times, and those of archives that part the date by strokes."""
+OF_DAY = re.compile(r"([01]?\d|2[0-3]):([0-5]\d):([0-5]\d([.,]\d+)?)")
+"""A time of a day, with its seconds."""
 LIST = re.compile(r"[\[({](?P<inside>[^\[\](){}]*)[\])}]")
 """A list in a cell: `[1, 2]`, `(1; 2)`, and `[1. 2.]` as NumPy prints it."""
 
@@ -45,7 +47,9 @@ def _list(text: str, comma: bool) -> list[object] | None:
 
 
 def seconds(text: str) -> float | None:
-    """Return a time as seconds since 1970, UTC where no zone is given; None for any other text."""
+    """Return a time as seconds since 1970, UTC where no zone is given, or of its day; None for any other text."""
+    if of_day := OF_DAY.fullmatch(text):
+        return 3600.0 * int(of_day[1]) + 60.0 * int(of_day[2]) + float(of_day[3].replace(",", "."))
     if not DATE_TIME.fullmatch(text):
         return None
     text = text.replace(",", ".").replace("Z", "+00:00").replace("/", "-")

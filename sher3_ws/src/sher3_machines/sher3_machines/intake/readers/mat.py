@@ -65,16 +65,18 @@ def arrays(raw: bytes, limit: int) -> dict[str, Array]:
     for name, value in scipy.io.loadmat(BytesIO(raw), verify_compressed_data_integrity=True).items():
         if not name.startswith("__"):
             found |= flatten(name, value)
-    if not found:
+    if not any(x.size for x in found.values()):
         raise ValueError(NO_NUMBERS)
     return found
 
 
 def flatten(name: str, value: Any, depth: int = 0) -> dict[str, Array]:
-    """Return numeric arrays (n, ...) of a value of `scipy.io.loadmat`, by path; class objects and text are left out."""
+    """Return numeric arrays (n, ...) of a value of `scipy.io.loadmat`, by path: (0,) of a class object, no text."""
     x = np.asarray(value)
-    if depth > MAX_DEPTH or CLASS in (x.dtype.names or ()):
+    if depth > MAX_DEPTH:
         return {}
+    if CLASS in (x.dtype.names or ()):
+        return {name: np.zeros(0)}
     if x.dtype.names:
         if titled := _titled(x):
             return {f"{name}/{title}" if name else title: array for title, array in titled.items()}
