@@ -138,13 +138,17 @@ def counts_rows(x: Array) -> bool:
 
 
 def evenly(x: Array) -> bool:
-    """Return whether the steps of a column (n,) are even, or are so but for a few pauses and never run back."""
+    """Return whether the steps of a column (n,) are even, or are so but for a few pauses and never run back.
+
+    Steps that are read to a coarse tick are even where they are a tick off.
+    """
     steps = np.diff(_unbroken(x[np.isfinite(x)]))
     if np.std(steps) < EVEN * np.mean(steps):
         return True
     if not (steps > 0.0).all():
         return False
-    return bool(np.mean(np.abs(steps / np.median(steps) - 1.0) < LATE) > FORWARD)
+    tick = float(steps.min()) * (1.0 + WHOLE) if np.median(steps) > steps.min() else 0.0
+    return bool(np.mean(np.abs(steps - np.median(steps)) < max(LATE * np.median(steps), tick)) > FORWARD)
 
 
 def period_of(stamps: Array) -> float:

@@ -245,3 +245,14 @@ def test_joints_that_go_one_way_and_back_do_not_follow_each_other(tmp_path):
     np.savetxt(tmp_path / "a.csv", np.column_stack([t, *q]), delimiter=",")
     with pytest.raises(MachineError, match=r"c0 is the time; name the columns in order"):
         draft_of(tmp_path / "a.csv")
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_stamps_that_are_read_to_a_coarse_tick_are_a_clock_in_a_matrix(tmp_path, seed):
+    """As of a logger that reads hundredths of a second about every 20 ms."""
+    draw = np.random.default_rng(seed)
+    t = np.cumsum(draw.uniform(0.016, 0.025, 2000))
+    place = 1.25 + 0.2 * draw.normal(size=len(t))
+    savemat(tmp_path / "a.mat", {"data": np.column_stack([t.round(2), place, place / 51.0])})
+    with pytest.raises(MachineError, match=r"data\[0\] is the time"):
+        draft_of(tmp_path / "a.mat")
