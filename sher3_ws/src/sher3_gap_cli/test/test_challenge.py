@@ -77,3 +77,20 @@ def test_calibrate_takes_the_plants_that_labels_name(tmp_path):
         "mujoco": ["case_mujoco"],
         "tables": ["case_tables"],
     }
+
+
+def test_calibrate_adds_up_ranges_of_which_a_part_is_kept(tmp_path, monkeypatch):
+    from sher3_challenge.calibration import drawn
+
+    asked = []
+
+    def draw(plants, seeds, kept, seconds):
+        asked.append((list(seeds), seconds))
+        return iter(())
+
+    monkeypatch.setattr(drawn, "draw", draw)
+    call = ["calibrate", "--in-force", "--plant", "tables", "--drawn", "0:3", "--drawn", "2:5", "--minutes", "0"]
+    result = invoke(app, [*call, "--kept", str(tmp_path)])
+    assert asked == [([0, 1, 2, 3, 4], 0.0)]
+    assert "evidence of 0 of 5 drawn cases" in result.output
+    assert result.exit_code == 2 and "no evidence of a cause" in result.output

@@ -6,9 +6,10 @@ fault is brought to its size on two excitations.
 
 from __future__ import annotations
 
+import math
+import time
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
-from itertools import count
 from pathlib import Path
 
 from sher3_description import Robot, load_robot
@@ -27,17 +28,29 @@ ITERATIONS, EXCITATIONS = 2, 2
 """By which a fault is brought to its size; what it has then stands in the label."""
 
 
-def draw(plants: Iterable[str], seeds: Iterable[int], kept: Path) -> Iterator[list[Observation]]:
-    """Yield the observations of drawn cases, plants and kinds dealt in turn; those in `kept` are not computed again."""
-    dealt, robot = list(plants), load_robot()
-    for n, seed in zip(count(), seeds, strict=False):
-        plant, kind = dealt[n % len(dealt)], TURN[n // len(dealt) % len(TURN)]
-        file = kept / plant / f"drawn_{seed:05d}.json"
+def draw(
+    plants: Iterable[str], seeds: Iterable[int], kept: Path, seconds: float = math.inf
+) -> Iterator[list[Observation]]:
+    """Yield the observations of drawn cases; those in `kept` are not computed again, those of too late not at all.
+
+    A seed by itself says its plant and kind, so that any ranges hold as many of each, and add up.
+
+    Args:
+        plants: names, dealt in turn.
+        seeds: of the cases.
+        kept: folder of their evidence.
+        seconds: from now on, after which no case is begun.
+    """
+    dealt, robot, until = list(plants), load_robot(), time.monotonic() + seconds
+    for seed in seeds:
+        turn, own = divmod(seed, len(dealt))
+        file = kept / dealt[own] / f"drawn_{seed:05d}.json"
         found = stored(file)
-        if not found:
-            found = evidence_of(robot, plant, kind, seed)
+        if not found and time.monotonic() < until:
+            found = evidence_of(robot, dealt[own], TURN[turn % len(TURN)], seed)
             keep(found, file)
-        yield found
+        if found:
+            yield found
 
 
 def plan_of(robot: Robot, plant: str, kind: str, seed: int) -> tuple[CasePlan, dict[str, float]]:

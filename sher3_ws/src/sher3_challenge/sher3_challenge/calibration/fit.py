@@ -172,7 +172,9 @@ def placed_among(calibration: Calibration, observations: Sequence[Observation]) 
 
 
 def typical(model: Logistic, examples: Sequence[Example]) -> Typical:
-    """Return where examples lie; a covariance is over those that have both inputs."""
+    """Return where examples lie; a covariance is over those that have both inputs. Raises ChallengeError of none."""
+    if not examples:
+        raise ChallengeError("no evidence of a cause", value=0, limit=1, remedy="more cases, or more --minutes")
     x = np.array([model.scaled(e.numbers) for e in examples])
     both = np.isfinite(x).T.astype(float) @ np.isfinite(x)
     covariance = np.nan_to_num(x).T @ np.nan_to_num(x) / np.maximum(both, 1.0)

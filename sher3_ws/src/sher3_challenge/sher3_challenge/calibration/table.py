@@ -13,6 +13,8 @@ from sher3_challenge.score.reliability import calibration_error
 
 CLEAR = 3.0
 """Gap over floor from which a case counts; exact stages always do."""
+SURE = 0.95
+"""Probability from which a cause is stated as good as certain."""
 STATUSES = ("no_gap", "attributed", "under_excited", "outside_library")
 
 Question = Callable[[Judgement], bool | None]
@@ -31,6 +33,7 @@ def rates(judgements: Sequence[Judgement]) -> dict[str, Rate]:
     seen = [r.value for r in shares.values() if r.value is not None]
     withheld = [j for j in kept if j.seen.without and not j.excused]
     stated = [r for j in judgements for r in j.right]
+    sure = [right for j in judgements for p, right in j.causes if p >= SURE]
     return {
         "balanced": Rate(sum(seen) / len(seen) if seen else None, len(whole)),
         **{f"said {s}": r for s, r in shares.items()},
@@ -42,6 +45,7 @@ def rates(judgements: Sequence[Judgement]) -> dict[str, Rate]:
         "top1": _rate([j.first_right for j in whole if j.first_right is not None]),
         "in the set": _rate([j.in_set for j in whole if j.in_set is not None]),
         "set size": _mean([j.set_size for j in whole if j.set_size is not None]),
+        "right of the sure": _rate(sure),
         "calibration error": Rate(calibration_error(stated) if stated else None, len(stated)),
     }
 
@@ -81,6 +85,7 @@ TARGETS = {
     "top1": Target(">=", 0.93),
     "in the set": Target(">=", 0.97),
     "set size": Target("<=", 1.3),
+    "right of the sure": Target(">=", 0.93),
     "calibration error": Target("<=", 0.05),
 }
 

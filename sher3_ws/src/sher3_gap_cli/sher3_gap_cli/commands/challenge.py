@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import json
+import math
 import re
 import tempfile
 from functools import partial
+from itertools import chain
 from pathlib import Path
 from typing import Annotated
 
@@ -110,8 +112,13 @@ def calibrate(
         ),
     ] = None,
     drawn: Annotated[
-        str | None, typer.Option(help="Range A:B of seeds of cases drawn on the plants in turn; no bags are written.")
+        list[str] | None,
+        typer.Option(help="Range A:B of seeds of cases drawn on the plants in turn, no bags written; repeat to add up."),
     ] = None,
+    minutes: Annotated[
+        float,
+        typer.Option(min=0.0, help="Begin no drawn case later than this: the tables are of those kept; 0 draws none."),
+    ] = math.inf,
     plant: Annotated[
         list[str] | None, typer.Option(help="Truth plant of drawn cases; repeat to deal several. All where not given.")
     ] = None,
@@ -147,9 +154,12 @@ def calibrate(
         check_writable([out, diagram], [kept])
         room = kept or Path(scratch)
         seen = gathered(plants_of(folders or []), room, jobs)
-        if drawn is not None:
+        if drawn:
             names = plant or [known.name for known in truth_plants(Console(stderr=True).log)]
-            seen += [o for rows in draw(names, range(*parse_seeds(drawn)), room) for o in rows]
+            seeds = dict.fromkeys(seed for text in drawn for seed in range(*parse_seeds(text)))
+            dealt = list(draw(names, seeds, room, 60.0 * minutes))
+            Console(stderr=True).log(f"evidence of {len(dealt)} of {len(seeds)} drawn cases")
+            seen += chain.from_iterable(dealt)
         if in_force:
             rules = calibration.in_force()
             found = placed_among(rules, seen)
