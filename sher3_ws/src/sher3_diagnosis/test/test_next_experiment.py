@@ -130,7 +130,7 @@ def test_each_form_of_a_law_that_is_left_open_may_be_at_work_and_may_stand_in(al
     """The direction looks like the drift of its form then, and both are one answer; of its other form it is told."""
     formed = Foreseeing(effects_known=(DIRECTION, Formed("drift", "drift", "warmth")), elsewhere=False)
     asked = diagnose(formed, alike).verdict.next_experiment
-    assert asked.expected_odds > 0.99
+    assert asked.expected_odds > 0.95  # settled
     assert asked.alike == []  # as long as the other form may be at work
 
 

@@ -113,7 +113,7 @@ def calibrate(
     ] = None,
     drawn: Annotated[
         list[str] | None,
-        typer.Option(help="Range A:B of seeds of cases drawn on the plants in turn, no bags written; repeat to add up."),
+        typer.Option(help="Range A:B of seeds of cases drawn on the plants in turn, without bags; repeat to add up."),
     ] = None,
     minutes: Annotated[
         float,
