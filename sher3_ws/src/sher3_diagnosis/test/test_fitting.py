@@ -50,7 +50,7 @@ def test_causes_that_take_one_another_back_are_told_by_their_size():
     data = evidence_of([run([1.0, -1.0]), run([1.0, -1.0])]).data
     first = make_term(data, OFFSET, "axis", {})
     columns = [{c: x * [[1.0], [1.05]] for c, x in each.items()} for each in first.columns]
-    second = replace(first, columns=columns, products={})
+    second = replace(first, columns=columns)
     assert fit(data, [first, second]).cancelled == pytest.approx(41.0, rel=0.05)
     assert fit(data, [make_term(data, DIRECTION, "axis", {})]).cancelled == pytest.approx(1.0)
     assert fit(data, []).cancelled == 0.0

@@ -18,7 +18,7 @@ class Standardised:
         target: `target[r][c]` is the (N,) vector of channel c in run r: samples that count, components in turn.
         fits: kept by `sher3_diagnosis.fit.fitting`.
         rows: per channel the target of all runs behind each other; by `fit.gram`.
-        trails: per channel the terms of the last fit, each with its blocks and the products so far; by `fit.gram`.
+        trails: per channel the terms of the last fit, each with the products so far; by `fit.gram`.
     """
 
     def __init__(

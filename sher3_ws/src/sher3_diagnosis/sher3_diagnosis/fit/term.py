@@ -12,6 +12,7 @@ import numpy as np
 
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.effect import Effect, Shape, Signature
+from sher3_diagnosis.fit.rows import Rows
 from sher3_diagnosis.fit.standardised import Standardised
 
 
@@ -26,6 +27,7 @@ class Term:
         limit: largest magnitude of a coefficient, in standard deviations: each is then expected to be normal with a
             standard deviation of one. Infinite for coefficients of which nothing is known beforehand.
         products: with other terms, kept by `sher3_diagnosis.fit.gram`.
+        held: its rows by channel, kept by `rows`.
     """
 
     effect: Effect
@@ -35,7 +37,8 @@ class Term:
     fixed: list[dict[Channel, Array]]
     width: int
     limit: float = math.inf
-    products: dict[Any, tuple[Any, Array]] = field(default_factory=dict, compare=False, repr=False)
+    products: dict[Any, tuple[Any, Array]] = field(default_factory=dict, init=False, compare=False, repr=False)
+    held: dict[Channel, Rows] = field(default_factory=dict, init=False, compare=False, repr=False)
 
     @property
     def key(self) -> tuple[str, str]:
@@ -54,6 +57,22 @@ class Term:
             {c: len(v) for part in (x, f) for c, v in part.items()}
             for x, f in zip(self.columns, self.fixed, strict=True)
         ]
+
+    def rows(self, channel: Channel) -> Rows:
+        """Return columns and, last, the fixed part on a channel, (width + 1, N) of all runs, zeros where none is.
+
+        From then on the columns are views of these rows.
+        """
+        if channel not in self.held:
+            parts, samples, both = [], [], (self.columns, self.fixed)
+            for run in zip(*both, strict=True):
+                parts.append([(row, x[channel]) for row, x in zip((0, self.width), run, strict=True) if channel in x])
+                samples.append(len(parts[-1][0][1]) if parts[-1] else 0)
+            rows = self.held[channel] = Rows(parts, samples, self.width + 1)
+            for x, begin, end in zip(self.columns, rows.ends[:-1], rows.ends[1:], strict=True):
+                if channel in x:
+                    x[channel] = rows.values[: x[channel].shape[1], begin:end].T
+        return self.held[channel]
 
     def adds(self, run: int, channel: Channel, coefficients: Array) -> Array | float:
         """Return what the term adds to a channel of a run with coefficients (p,), standardised (N,); else 0.
@@ -74,9 +93,7 @@ class Term:
     def with_runs(self, more: Term) -> Term:
         """Return the term on its runs and on those of another evaluation."""
         width = max(self.width, more.width)
-        return replace(
-            self, columns=self.columns + more.columns, fixed=self.fixed + more.fixed, width=width, products={}
-        )
+        return replace(self, columns=self.columns + more.columns, fixed=self.fixed + more.fixed, width=width)
 
 
 def make_term(data: Standardised, effect: Effect, site: str, shape: Shape) -> Term:
