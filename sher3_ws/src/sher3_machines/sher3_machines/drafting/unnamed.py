@@ -240,9 +240,7 @@ def _timed(tables: Tables, rate: float | None) -> tuple[Place | None, Array, dic
 
     Without a clock and a rate there are no columns.
     """
-    columns = {
-        place: values_at(place, tables) for place in places_of(tables) if place[1] is not None or _mute(place[0])
-    }
+    columns = {place: values_at(place, tables) for place in places_of(tables) if _mute(place[0])}
     clocks = [p for p, x in columns.items() if grows(x) and (evenly(x) or tells_time(p[0]))] if rate is None else []
     clock = next((p for p in clocks if not counts_rows(columns[p])), clocks[0] if clocks else None)
     if not columns or (clock is None and rate is None):
