@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from functools import cache
 from pathlib import Path
 
@@ -26,15 +26,23 @@ def imports(path: Path) -> frozenset[str]:
     return frozenset(module.split(".")[0] for module in modules(path))
 
 
-@cache
 def modules(path: Path, types: bool = False) -> set[str]:
     """Return the same as dotted names; of `from a.b import c` both `a.b` and `a.b.c`, which may be a module too.
 
     With `types`, also what only the type checker sees.
     """
-    names = set()
+    return _modules(path)[types]
+
+
+@cache
+def _modules(path: Path) -> tuple[set[str], set[str]]:
     tree = ast.parse(path.read_text())
-    for node in ast.walk(tree) if types else _walk(tree):
+    return _imported(_walk(tree)), _imported(ast.walk(tree))
+
+
+def _imported(nodes: Iterable[ast.AST]) -> set[str]:
+    names: set[str] = set()
+    for node in nodes:
         if isinstance(node, ast.Import):
             names |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom) and node.level == 0 and node.module:
