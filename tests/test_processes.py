@@ -111,7 +111,7 @@ def test_ready_line_then_ctrl_c_stops_everything(robot, bag_folder):
     running.records(bag_folder)
     running.process.send_signal(signal.SIGINT)
     status, out, _ = running.finish()
-    assert status == 0
+    assert status == 0, out
     assert out.strip().endswith(f"stopped; recorded {bag_folder}")
     assert not [child for child in children if child.is_running() and child.status() != psutil.STATUS_ZOMBIE]
     run = read_run(bag_folder, check=False)
