@@ -13,7 +13,6 @@ from sher3_drivers.bus.frame import pack_frame
 from sher3_drivers.canopen.dictionary import drive_dictionary
 from sher3_drivers.canopen.objects import OBJECTS, Address
 
-_SIGNED = {"i8", "i16", "i32"}
 _NO_OBJECT = 0x06020000
 
 
@@ -109,15 +108,13 @@ class CanopenDevice:
     def _write(self, index: int, subindex: int, od: object, data: bytes) -> None:
         del od
         address = self._address(index, subindex)
-        value = int.from_bytes(data, "little", signed=OBJECTS[address].kind in _SIGNED)
+        value = OBJECTS[address].unpack(data)
         self._on_write(address, value)
         self.values[address] = value
 
     def write(self, address: Address, value: int) -> None:
         """Take a value as an SDO download does, without its frames."""
-        kind = OBJECTS[address].kind
-        data = value.to_bytes(int(kind[1:]) // 8, "little", signed=kind in _SIGNED)
-        self._node.set_data(address.main, address.sub, data)
+        self._node.set_data(address.main, address.sub, OBJECTS[address].pack(value))
 
     def handle(self, can_id: int, data: bytes) -> None:
         """Serve an SDO request or NMT command; anything malformed is ignored, as a node on the bus does."""

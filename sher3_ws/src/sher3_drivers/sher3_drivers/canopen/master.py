@@ -29,7 +29,6 @@ from sher3_drivers.canopen.objects import (
 )
 from sher3_drivers.errors import DriveMismatch, DriveSilent
 
-_SIGNED = {"i8", "i16", "i32"}
 _CHECK = "check power, node id, bit rate and the channel it is configured on"
 NO_OBJECT, NO_SUB_INDEX, READ_ONLY = 0x06020000, 0x06090011, 0x06010002
 """SDO abort codes of CiA 301: there is no such object, no such sub-index, and it cannot be written."""
@@ -114,7 +113,7 @@ class CanopenMaster:
             if _is_missing(error) and OBJECTS[address].optional:
                 return None
             raise _silent(drive, f"cannot read {address} ({OBJECTS[address].name}): {error}") from error
-        return int.from_bytes(data, "little", signed=OBJECTS[address].kind in _SIGNED)
+        return OBJECTS[address].unpack(data)
 
     def write(self, drive: str, address: Address, value: int) -> None:
         """Write the value of an object; one that is optional may be missing or read only, and is judged by its value.
@@ -122,10 +121,8 @@ class CanopenMaster:
         Raises:
             DriveSilent: no answer in time, or the drive refuses.
         """
-        kind = OBJECTS[address].kind
-        data = value.to_bytes(int(kind[1:]) // 8, "little", signed=kind in _SIGNED)
         try:
-            self._clients[drive].download(address.main, address.sub, data)
+            self._clients[drive].download(address.main, address.sub, OBJECTS[address].pack(value))
         except (SdoCommunicationError, SdoAbortedError) as error:
             if _is_missing(error, READ_ONLY) and OBJECTS[address].optional:
                 return

@@ -73,6 +73,14 @@ class DriveObject(NamedTuple):
     access: str
     optional: bool = False
 
+    def pack(self, value: int) -> bytes:
+        """Return a value of the object as it goes over the bus, little-endian (CiA 301)."""
+        return value.to_bytes(BITS[self.kind] // 8, "little", signed=self.kind.startswith("i"))
+
+    def unpack(self, data: bytes) -> int:
+        """Return the value of the object that `data` says."""
+        return int.from_bytes(data, "little", signed=self.kind.startswith("i"))
+
 
 CONTROLWORD = Address(0x6040, 0)
 STATUSWORD = Address(0x6041, 0)
