@@ -194,7 +194,7 @@ class _Freezer(pickle.Pickler):
     """Asks about instances alone, a tenth of the things in a world; texts, numbers and tuples of them take no call."""
 
     def reducer_override(self, thing: Any) -> Any:
-        if isinstance(thing, (Enum, Struct, np.dtype)) and id(thing) not in _NUMBERS:
+        if isinstance(thing, (Enum, Struct, np.dtype, type, AxisScale)) and id(thing) not in _NUMBERS:
             _NUMBERS[id(thing)] = len(SHARED)
             SHARED.append(thing)
         number = _NUMBERS.get(id(thing))
