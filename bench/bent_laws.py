@@ -6,23 +6,30 @@
 Printed is the table of all cases, of robots with bent and with close laws, and of each plant, by the weights in force:
 once with all that is left of a gap held against its cause (`all left`), once as if each cause stood alone, and once as
 it is judged: less what is a bend of its law, beside the other causes of its gap; with the log loss of the causes' odds.
+Then what other costs make of these odds: right causes called outside against foreign and withheld effects blamed.
 """
 
 from __future__ import annotations
 
 import argparse
 import time
+from collections.abc import Sequence
 from pathlib import Path
 
 from other_odds import causes_of, surprise
 from sher3_challenge.calibration.drawn import draw
 from sher3_challenge.calibration.held_out import by_plant, by_shape, groups, judged_by, middle
-from sher3_challenge.calibration.observe import stored, without_evidence
+from sher3_challenge.calibration.observe import Observation, stored, without_evidence
 from sher3_challenge.calibration.table import rates, written
 from sher3_challenge.plants.level import SHAPE, Level
+from sher3_challenge.score.rates import Rate
 from sher3_diagnosis.judge.calibration.calibration import in_force
+from sher3_diagnosis.judge.costs import Costs
 
 PLANTS = ("lumped", "tables", "mujoco")
+NAMING = (0.125, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0)
+"""Costs of a wrong name, of which an abstention costs one."""
+MISTAKES = ("rightly named, called outside", "outside blamed", "withheld blamed")
 
 
 def draw_bent(seeds: range, kept: Path, seconds: float) -> None:
@@ -32,6 +39,21 @@ def draw_bent(seeds: range, kept: Path, seconds: float) -> None:
         print(rows[0].plant, rows[0].case, flush=True)
         if time.process_time() > seconds:
             return
+
+
+def over_costs(seen: Sequence[Observation]) -> str:
+    """Return the table in Markdown of the mistakes that the odds of cases make at other costs of a wrong name."""
+    lines = [f"| a wrong name costs | {' | '.join(MISTAKES)} |", "|---" * (len(MISTAKES) + 1) + "|"]
+    for name in NAMING:
+        found = rates(judged_by(in_force(), seen, Costs(name=name)))
+        lines.append(f"| {name:g} | {' | '.join(_counted(found[m]) for m in MISTAKES)} |")
+    return "\n".join(lines)
+
+
+def _counted(rate: Rate) -> str:
+    if rate.value is None:
+        return "-"
+    return f"{rate.value * rate.n:.0f} of {rate.n} [{rate.low:.2f}, {rate.high:.2f}]"
 
 
 def main() -> None:
@@ -55,6 +77,8 @@ def main() -> None:
         judged = {group: judged_by(in_force(), rows) for group, rows in own.items()}
         print(f"{name}: {surprise(causes_of(judged['all']))}")
         print(written({group: rates(j) for group, j in judged.items()}) + "\n")
+    for name, seen in {"all": found, **groups(found, by_shape)}.items():
+        print(f"{name}, other costs\n{over_costs(seen)}\n")
 
 
 if __name__ == "__main__":

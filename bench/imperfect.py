@@ -7,7 +7,7 @@ arms seen from outside. Each is judged with the whole library and without one of
 
     nice python bench/imperfect.py draw EVIDENCE --cases 20 16 20 --first 30000      # seconds of a case
     python bench/imperfect.py real EVIDENCE                                    # the measured sets of SHER3_SHARED
-    python bench/imperfect.py table EVIDENCE
+    python bench/imperfect.py table EVIDENCE > docs/reference/odds-imperfect.md
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ import math
 import sys
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
+from hashlib import sha256
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -30,9 +31,10 @@ from sher3_challenge.calibration.held_out import reproduced as reproduced_plain
 from sher3_challenge.calibration.labels import answer_of
 from sher3_challenge.calibration.observe import Observation, observed_findings
 from sher3_common import Sher3Error
+from sher3_common.numbers.shares import wilson
 from sher3_diagnosis import diagnose
 from sher3_diagnosis.finding import LIBRARY, OUTSIDE, Item
-from sher3_diagnosis.judge.calibration.calibration import in_force
+from sher3_diagnosis.judge.calibration.calibration import FILE, in_force
 from sher3_diagnosis.judge.costs import DEFAULT
 from sher3_diagnosis.judge.evidence.scales import of_whole
 from sher3_diagnosis.judge.probabilities import judged_together
@@ -46,6 +48,22 @@ AXES = 3
 """Axes of a machine."""
 SMOOTH = 41
 """Samples over which a drawn motion is smoothed for its acceleration."""
+NAMED = ("attributed", "under_excited")
+"""Statuses that name causes."""
+HEAD = """# Odds on imperfect machines
+
+How the odds hold on machines that differ from their pages by 0.3 to 30 % of what they do beyond their nominal: bent
+from place to place, drifting and rippled ([its level](../explanation/bent-laws.md#the-level-of-a-machine)).
+The cases set no weight. A test compares the weights of this page with those in force.
+
+`python bench/imperfect.py draw EVIDENCE --cases 16 16 20 --first 50000` draws them in minutes, `real EVIDENCE` adds the
+measured sets where there are some, and `table EVIDENCE` prints this page.
+
+An axis is one of three of its machine. Every share has its 95 % interval; *withheld* is an effect of the library that
+was left out, where it leaves what is foreign. Odds are those of causes, at the level of SHER's labelled robots and at
+each machine's own."""
+SPREAD = "What places with right causes leave over the level of their machine, in logarithms:"
+MEASURED = "Of measured sets the causes that are known from outside, and how many of them are named:"
 
 
 def level(seed: int) -> float:
@@ -218,20 +236,24 @@ def settled(rows: Sequence[Seen]) -> list[Seen]:
     return [r for r in rows if not r.seen.without or foreign(r)]
 
 
-def rates_of(judged: Sequence[tuple[Seen, str]]) -> str:
-    """Return how often right causes are called outside, foreign and withheld ones blamed, and healthy ones alarm."""
-    named = ("attributed", "under_excited")
-    sorts = {
-        "right called outside": ("attributed", False, ("outside_library",)),
-        "foreign blamed": ("outside_library", False, named),
-        "withheld blamed": ("attributed", True, named),
-        "alarms": ("no_gap", False, ("outside_library", *named)),
-    }
+SORTS: Mapping[str, tuple[str, bool, tuple[str, ...]]] = {
+    "right called outside": ("attributed", False, ("outside_library",)),
+    "foreign blamed": ("outside_library", False, NAMED),
+    "withheld blamed": ("attributed", True, NAMED),
+    "alarms": ("no_gap", False, ("outside_library", *NAMED)),
+}
+"""Mistakes: status of the label, whether an effect is left out, and the answers that are wrong then."""
+
+
+def shares_of(judged: Sequence[Judgement]) -> list[str]:
+    """Return how often each mistake of `SORTS` is made, with its interval."""
     out = []
-    for name, (status, without, wrong) in sorts.items():
-        said = [s for row, s in judged if row.seen.truth["status"] == status and bool(row.seen.without) == without]
-        out.append(f"{name} {sum(s in wrong for s in said)} of {len(said)}")
-    return ", ".join(out)
+    for status, without, wrong in SORTS.values():
+        said = [j.status for j in judged if (j.row.seen.truth["status"], bool(j.row.seen.without)) == (status, without)]
+        k, n = sum(s in wrong for s in said), len(said)
+        low, high = wilson(k / n, n) if n else (0.0, 0.0)
+        out.append(f"{k} of {n} [{low:.2f}, {high:.2f}]" if n else "-")
+    return out
 
 
 def spread_of(rows: Sequence[Seen]) -> str:
@@ -247,22 +269,47 @@ def spread_of(rows: Sequence[Seen]) -> str:
     return f"mean {told.mean():.1f}, standard deviation {told.std():.1f} (n {len(told)})" if len(told) else "none"
 
 
-def table(options: argparse.Namespace) -> None:
-    """Print what odds make of the cases, and of the measured sets."""
-    kept = list(read(options.folder))
+def weights() -> str:
+    """Return what the weights in force are known by: the first digits of the SHA-256 of their file."""
+    return sha256(FILE.read_bytes()).hexdigest()[:12]
+
+
+def row_of(cells: Sequence[str]) -> str:
+    """Return a row of a table in Markdown."""
+    return f"| {' | '.join(cells)} |"
+
+
+def page(kept: Sequence[Seen]) -> str:
+    """Return the page of the reference: what odds make of the cases, and of the measured sets."""
+    head = ["machines", "level", *SORTS]
+    rates, odds, levels = [row_of(head), "|---" * len(head) + "|"], list[str](), list[str]()
     for source in SOURCES:
         rows = settled([r for r in kept if r.source == source])
-        print(f"{source}: what a place leaves, over the level: {spread_of(rows)}")
-        for name, own in (("labelled robots' level", False), ("own level", True)):
+        if not rows:
+            continue
+        numbers = sorted({int(r.machine) for r in rows})
+        levels.append(f"- {source}, {len(numbers)} of {numbers[0]} to {numbers[-1]}: {spread_of(rows)}")
+        for name, own in (("SHER's", False), ("own", True)):
             judged = list(judgements(rows, own))
-            told = plain.surprise([c for j in judged for c in j.causes])
-            print(f"{source}: odds, {name}: {rates_of([(j.row, j.status) for j in judged])}; {told}")
+            rates.append(row_of([source, name, *shares_of(judged)]))
+            odds.append(f"- {source}, {name} level: {plain.surprise([c for j in judged for c in j.causes])}")
+    sets = [row_of(["measured set", "known causes", "SHER's level", "own level"]), "|---" * 4 + "|"]
     for row in (r for r in kept if r.source == "measured"):
         known = next(m for m in measured.SETS if m.name == row.machine)
-        told = [
-            f"{j.status} {sum(measured.kept(known, j.named))}" for own in (False, True) for j in judgements([row], own)
-        ]
-        print(f"{row.machine}, {len(known.known)} known causes: {', '.join(told)}")
+        told = [f"{j.status}, {sum(measured.kept(known, j.named))} named" for j in both_levels(row)]
+        sets.append(row_of([row.machine, str(len(known.known)), *told]))
+    parts = [HEAD, f"Weights in force: `{weights()}`.", "\n".join(rates), "\n".join(odds), SPREAD, "\n".join(levels)]
+    return "\n\n".join([*parts, MEASURED, "\n".join(sets)]) + "\n"
+
+
+def both_levels(row: Seen) -> list[Judgement]:
+    """Return what odds make of one machine at the level of the labelled robots, and at its own."""
+    return [j for own in (False, True) for j in judgements([row], own)]
+
+
+def table(options: argparse.Namespace) -> None:
+    """Print the page."""
+    print(page(list(read(options.folder))), end="")
 
 
 def draw(folder: Path, source: str, seeds: range) -> None:

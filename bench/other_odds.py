@@ -31,7 +31,7 @@ from sher3_challenge.calibration.fit import updated
 from sher3_challenge.calibration.held_out import Judgement, by_plant, groups, held_out, judged_by
 from sher3_challenge.calibration.observe import Observation, keep, observed_on, stored, without_evidence
 from sher3_challenge.calibration.selective import curve
-from sher3_challenge.calibration.table import rates, written
+from sher3_challenge.calibration.table import SURE, rates, written
 from sher3_challenge.score.reliability import calibration_error, diagram
 from sher3_common import Sher3Error
 from sher3_diagnosis.judge.calibration.calibration import in_force
@@ -269,7 +269,7 @@ def surprise(stated: Sequence[tuple[float, bool]]) -> str:
     if not stated:
         return "no causes"
     loss = -np.mean([math.log(max(p if right else 1.0 - p, LEAST)) for p, right in stated])
-    sure = [right for p, right in stated if p >= 0.95]
+    sure = [right for p, right in stated if p >= SURE]
     return (
         f"log loss {loss:.2f}, calibration error {calibration_error(stated):.2f} (n {len(stated)}), "
         f"stated 95 % and more right in {sum(sure)} of {len(sure)}"

@@ -4,7 +4,7 @@
 
 Every robot is drawn, simulated and diagnosed. Where the best bet of the first place has odds between 10 and 90 % and
 the verdict foretells what an experiment makes of them, the same robot runs this experiment, and the case with all of
-its runs is diagnosed again; where that does not settle it (95 %), what the new verdict names follows. A tracker that
+its runs is diagnosed again; where that does not settle it (`SURE`), what the new verdict names follows. A tracker that
 was added stays. Rivals of which the verdict says that nothing tells them apart are one answer. Printed are the odds of
 that bet before, as expected, and of the likeliest answer after each experiment, and the shares with their intervals.
 """
@@ -20,6 +20,7 @@ from typing import Any, TypeGuard
 import numpy as np
 from sher3_challenge.calibration.drawn import plan_of
 from sher3_challenge.calibration.labels import equal
+from sher3_challenge.calibration.table import SURE
 from sher3_challenge.cases.plan import RUN_SPACING_NS, CasePlan
 from sher3_challenge.plants.plant import RunPlan
 from sher3_common.numbers.shares import wilson
@@ -31,7 +32,7 @@ from sher3_gap.experiments.foreseen import APART, REPEATS, SAME, TRACKED, WARMED
 from sher3_gap.sher import diagnose_runs
 
 PLANTS = ("lumped", "tables", "mujoco")
-OPEN, SETTLED = (0.10, 0.90), 0.95
+OPEN = (0.10, 0.90)
 MOST = 3
 """Experiments that are made one after the other, each the one that the last verdict names."""
 
@@ -133,7 +134,7 @@ def settled(seed: int, kind: str, robot: Robot) -> Settled | None:
             f"{' or '.join(map(named, together))} {after[-1][0]:.2f} {'right' if right else 'wrong'}"
         )
         asked = verdict.next_experiment
-        if after[-1][0] >= SETTLED or verdict.untold:
+        if after[-1][0] >= SURE or verdict.untold:
             break
     print(said, flush=True)
     return Settled(bet.probability, expected, reached[0], tuple(after))
@@ -158,7 +159,7 @@ def main() -> None:
         found += [x] if (x := settled(seed, options.kind, robot)) else []
     for experiments in range(1, MOST + 1):
         answers = [x.by(experiments) for x in found]
-        sure = [right for p, right in answers if p >= SETTLED]
+        sure = [right for p, right in answers if p >= SURE]
         print(f"after {experiments}: mean odds {np.mean([p for p, _ in answers]):.2f}")
         for name, k, n in (
             ("settled and right", sum(sure), len(found)),

@@ -5,7 +5,7 @@
 Every axis of `sher3_chain/test/drawn_axes.py` is drawn and diagnosed. Where the best bet has odds between 10 and 90 %
 and the verdict foretells what an experiment makes of them, the same axis is recorded once more: in the same motion at
 another speed, or with a known mass on it that is described as `carried`, and judged with all records; where that does
-not settle these rivals (95 %), what the new verdict names for them follows. Rivals of which the verdict says that
+not settle these rivals (`SURE`), what the new verdict names for them follows. Rivals of which the verdict says that
 nothing tells them apart are one answer. Printed are odds of what is at work, as expected and as reached.
 """
 
@@ -19,9 +19,10 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from settle import MOST, OPEN, SETTLED, foretold
+from settle import MOST, OPEN, foretold
 from sher3_chain.axes.foreseen import SPEEDS, WEIGHED
 from sher3_chain.axes.machine import Axes
+from sher3_challenge.calibration.table import SURE
 from sher3_common.numbers.shares import wilson
 from sher3_diagnosis import diagnose
 from sher3_diagnosis.verdict import NextExperiment, Verdict
@@ -81,7 +82,7 @@ def settled(seed: int) -> tuple[bool, Reached] | None:
         how = " with ".join(filter(None, (asked.excitation, asked.added)))
         said.append(f"{how}: {asked.expected_odds:.2f} expected, {right:.2f} reached")
         asked = verdict.next_experiment
-        if max(odds.values()) >= SETTLED:
+        if max(odds.values()) >= SURE:
             break
     print(f"{seed}: {' / '.join(rivals)}; {'; then '.join(said)}", flush=True)
     return made[0].added == WEIGHED, found[-1]
@@ -90,8 +91,8 @@ def settled(seed: int) -> tuple[bool, Reached] | None:
 def shares(name: str, some: Sequence[Reached]) -> None:
     """Print the shares that were settled."""
     if some:
-        right = sum(x.right >= SETTLED for x in some)
-        wrong = sum(x.likely >= SETTLED > x.right for x in some)
+        right = sum(x.right >= SURE for x in some)
+        wrong = sum(x.likely >= SURE > x.right for x in some)
         low, high = wilson(right / len(some), len(some))
         print(f"{name}: settled and right {right} of {len(some)} [{low:.2f}, {high:.2f}], settled and wrong {wrong}")
         expected, after, _ = np.mean(some, axis=0)

@@ -284,6 +284,11 @@ class Effect:
         return ROTARY.get(unit, unit) if rotary else unit
 
 
+def within(limits: Mapping[str, tuple[float, float]], told: Mapping[str, Sequence[float]]) -> bool:
+    """Return whether every value that is told of a parameter lies within its limits; one without may be anything."""
+    return all(least <= x <= most for name, (least, most) in limits.items() for x in told.get(name, ()))
+
+
 def column(*parts: Array) -> Array:
     """Stack (g,) columns into (g, 1, p)."""
     return np.stack(parts, axis=-1)[:, None, :]

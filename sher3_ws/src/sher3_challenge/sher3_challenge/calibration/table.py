@@ -14,7 +14,7 @@ from sher3_challenge.score.reliability import calibration_error
 CLEAR = 3.0
 """Gap over floor from which a case counts; exact stages always do."""
 SURE = 0.95
-"""Probability from which a cause is stated as good as certain."""
+"""Probability from which a cause is stated as good as certain, and an experiment has settled its odds."""
 STATUSES = ("no_gap", "attributed", "under_excited", "outside_library")
 
 Question = Callable[[Judgement], bool | None]

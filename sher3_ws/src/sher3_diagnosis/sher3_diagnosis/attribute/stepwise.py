@@ -14,7 +14,7 @@ from sher3_diagnosis.attribute.candidates import Candidates, complexity
 from sher3_diagnosis.attribute.rivals import Attribution, pruned_by, without_term
 from sher3_diagnosis.attribute.search import Left
 from sher3_diagnosis.attribute.ties import first_of_least
-from sher3_diagnosis.effect import Effect
+from sher3_diagnosis.effect import Effect, within
 from sher3_diagnosis.fit.fitting import Fit, Term, fit
 from sher3_diagnosis.thresholds import NEEDED, PARSIMONY, PRICE
 
@@ -72,10 +72,9 @@ def grow(candidates: Candidates, effects: Sequence[Effect], current: Fit) -> Fit
 
 def _within_limits(trial: Fit) -> bool:
     """Return whether the numbers of the last term may be what its page says that they are."""
-    last = len(trial.terms) - 1
-    term = trial.terms[last]
-    values = term.effect.parameters(term.shape, trial.of(last))
-    return all(low <= values[name] <= high for name, (low, high) in term.effect.limits(term.shape).items())
+    term, found = trial.terms[-1], trial.of(len(trial.terms) - 1)
+    values = term.effect.parameters(term.shape, found)
+    return within(term.effect.limits(term.shape), {name: (x,) for name, x in values.items()})
 
 
 def _needed(term: Term, base: float, current: Fit) -> float:

@@ -17,6 +17,7 @@ from sher3_diagnosis.attribute.candidates import Candidates
 from sher3_diagnosis.attribute.rivals import Attribution
 from sher3_diagnosis.attribute.together import Left
 from sher3_diagnosis.channel import Array
+from sher3_diagnosis.effect import within
 from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.fit.fitting import Fit, Term
 from sher3_diagnosis.judge.borne_out import closed_without
@@ -190,7 +191,7 @@ def impossible(evidence: Evidence, term: Term, coefficients: Array, cause: Cause
         wide = term.effect.family == LOST and term.effect.units.get(name) == "m"
         if wide or (name in sizes and evidence.own_unit(p.unit, term.site) in PLACES):
             limits[name] = (limits.get(name, (0.0 if wide else -travel, travel))[0], travel)
-    return any(_outside(cause.parameters[n], *limit) for n, limit in limits.items() if n in cause.parameters)
+    return not within(limits, {name: _told(p) for name, p in cause.parameters.items()})
 
 
 def _travel(evidence: Evidence, site: str) -> float:
@@ -207,9 +208,8 @@ def _travel(evidence: Evidence, site: str) -> float:
     return max(moved, default=math.inf)
 
 
-def _outside(p: Parameter, least: float, most: float) -> bool:
-    ends = [x for x in (p.low, p.value, p.high) if x is not None]
-    return min(ends) < least or max(ends) > most
+def _told(p: Parameter) -> list[float]:
+    return [x for x in (p.low, p.value, p.high) if x is not None]
 
 
 def _holds_zero(p: Parameter) -> bool:
