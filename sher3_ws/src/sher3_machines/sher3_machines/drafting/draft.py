@@ -118,7 +118,7 @@ def drafted(path: Path, tables: Tables, rate: float | None, guesses: list[str], 
     known = {name for name, _ in roles}
     left += [n for n, x in tables.items() if n not in known and n != clock and moves(x)]
     reached: dict[object, float] = {}
-    spelt = {axis: _spelt(signals["position"], axis) for axis, signals in groups.items()}
+    spelt = {axis: _spelt(signals["position"], axis, tables) for axis, signals in groups.items()}
     for axis, signals in groups.items():
         farthest = reach(values_of(signals["position"], tables))
         reached[spelt[axis]] = max(reached.get(spelt[axis], 0.0), farthest)
@@ -151,19 +151,23 @@ def drafted(path: Path, tables: Tables, rate: float | None, guesses: list[str], 
     return {"kind": "axes", "name": name_of(path.resolve()), "time": time, "axes": axes}
 
 
-def _spelt(place: Place, axis: str) -> object:
+def _spelt(place: Place, axis: str, tables: Tables) -> object:
     """Return what places in one unit share: a table, the words of the name but the axis', and whether it slides."""
     name = place[0]
     words = frozenset(words_of(bare(name))) - set(named(name).axis.split("_")) - set(axis.split("_"))
-    return table_of(name), words, _slides(axis, name)
+    return table_of(name), words, _slides(axis, name, tables)
 
 
-def _slides(axis: str, place: str) -> bool:
-    """Return whether the name of an axis says that it slides, or that of its place that it is a length."""
-    return bool(set(axis.split("_")) & SLIDING_AXES or set(words_of(bare(place))) & LENGTHS)
+def _slides(axis: str, place: str, tables: Tables) -> bool:
+    """Return whether the name of an axis says that it slides, that of its place that it is a length, or a quaternion
+    (n, 4) beside the place (n, 3) that it is one of a pose.
+    """
+    turn = tables.get(place.removesuffix(bare(place)) + "orientation", np.zeros(0))
+    pose = tables[place].shape[1:] == (3,) and turn.shape[1:] == (4,)
+    return bool(pose or set(axis.split("_")) & SLIDING_AXES or set(words_of(bare(place))) & LENGTHS)
 
 
-def _unit_of(place: Place, axis: str, x: Array, reached: float) -> tuple[str, float, str]:
+def _unit_of(place: Place, axis: str, tables: Tables, x: Array, reached: float) -> tuple[str, float, str]:
     """Return the unit of a place, its factor, and why; of a velocity that stands for one, the unit of it.
 
     `reached` is the largest value of all places that are spelt alike.
@@ -173,9 +177,9 @@ def _unit_of(place: Place, axis: str, x: Array, reached: float) -> tuple[str, fl
         said = ELECTRICAL if "erpm" in place[0].lower() else NAMED
         return (what.unit, 1.0, said) if what.unit in VELOCITIES else ("rad/s", 1.0, "it is a velocity")
     if what.unit is None and JOINT_STATES in place[0]:
-        return ("m" if _slides(axis, place[0]) else "rad"), 1.0, OF_ROS
+        return ("m" if _slides(axis, place[0], tables) else "rad"), 1.0, OF_ROS
     counted = what.unit is None and bool((x == np.round(x)).all()) and bool(set(words_of(bare(place[0]))) & COUNTING)
-    return position_unit("count" if counted else what.unit, x, _slides(axis, place[0]), reached)
+    return position_unit("count" if counted else what.unit, x, _slides(axis, place[0], tables), reached)
 
 
 def by_motion(label: str, signals: Mapping[str, Place], tables: Tables, guesses: list[str]) -> Mapping[str, Place]:
@@ -214,7 +218,7 @@ def _axis(
     label = f"joint{label}" if label[0].isdigit() else label
     signals = by_motion(label, signals, tables, guesses)
     x = values_of(signals["position"], tables)
-    unit, factor, why = _unit_of(signals["position"], axis, x, reached)
+    unit, factor, why = _unit_of(signals["position"], axis, tables, x, reached)
     guesses.append(f"{label}: position in {unit}, because {why}")
     columns: dict[str, Any] = {}
     for signal in SIGNALS:

@@ -35,10 +35,12 @@ VELOCITY = vocabulary(
 EFFORT = vocabulary(
     "effort efforts torque torques tau taus tao force iq trq moment drehmoment strom kraft amps qfrc f tq"
 )
-TWOFOLD = vocabulary("tq")
-"""Words for an effort that some write for a place that is asked for: a torque, and the target of `q`."""
 CURRENT = vocabulary("current currents curr cur i corriente courant corrente")
 """A current is an effort, but the current position is the measured one."""
+TWOFOLD = {"tq": ("reference", "position"), **dict.fromkeys(CURRENT, ("position", "reference"))}
+"""Words for an effort that some write for a place -> which, and beside what: the target of `q`, `Current X` beside
+`Target X`.
+"""
 COMMAND = vocabulary(
     "control ctrl u input eingang voltage volt voltaje spannung pwm duty vir valve ventil esforço esforco"
 )

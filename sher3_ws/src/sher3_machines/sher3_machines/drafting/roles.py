@@ -158,15 +158,20 @@ def _beside(found: Mapping[Place, tuple[str, str]], tables: Tables) -> dict[Plac
 
 
 def _asked(found: Mapping[Place, tuple[str, str]], tables: Tables) -> dict[Place, tuple[str, str]]:
-    """Return the signals with what may be a torque, or the target of a place, as a target where the place is near."""
-    places = {axis: values_of(p, tables) for p, (signal, axis) in found.items() if signal == "position"}
+    """Return the signals with what may be an effort, or a place, as the place that its axis lacks where it is near."""
+    signals = {what: values_of(p, tables) for p, what in found.items()}
 
-    def near(p: Place, axis: str) -> bool:
-        x, y = places.get(axis, np.zeros(0)), values_of(p, tables)
-        return 0 < len(x) == len(y) and float(np.sqrt(np.mean((x - y) ** 2))) < NEAR * travel(x)
+    def place(p: Place, axis: str) -> tuple[str, str] | None:
+        y = values_of(p, tables)
+        for signal, beside in {TWOFOLD[word] for word in words_of(p[0]) if word in TWOFOLD}:
+            x = signals.get((beside, axis), np.zeros(0))
+            near = 0 < len(x) == len(y) and float(np.sqrt(np.mean((x - y) ** 2))) < NEAR * travel(x)
+            if near and (signal, axis) not in signals:
+                return signal, axis
+        return None
 
-    unsure = {p: axis for p, (signal, axis) in found.items() if signal == "effort" and TWOFOLD & set(words_of(p[0]))}
-    return {**found, **{p: ("reference", axis) for p, axis in unsure.items() if near(p, axis)}}
+    unsure = {p: axis for p, (signal, axis) in found.items() if signal == "effort" and named(p[0]).unit not in FORCES}
+    return {**found, **{p: what for p, axis in unsure.items() if (what := place(p, axis)) is not None}}
 
 
 def _says_place(name: str) -> bool:

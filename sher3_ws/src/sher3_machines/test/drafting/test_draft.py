@@ -385,3 +385,15 @@ def test_a_distance_slides_whatever_its_axis_is_called(tmp_path):
     t = np.arange(0.0, 5.0, 0.05)
     np.savetxt(tmp_path / "a.csv", np.column_stack([t, 0.3 * np.sin(t)]), delimiter=",", header="t,dist", comments="")
     assert "motion: linear" in draft(tmp_path / "a.csv").text
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_place_beside_a_quaternion_is_one_of_a_pose_in_metres(seed):
+    """Drawn paths of a hand: as a PoseStamped of a bag has them, and the same matrix as angles of joints."""
+    rng = np.random.default_rng(seed)
+    path = rng.uniform(0.1, 2.0, 3) * np.sin(np.outer(TIME, rng.uniform(0.5, 3.0, 3)))
+    turn = np.tile([0.0, 0.0, 0.0, 1.0], (len(TIME), 1))
+    joints = {"hand/stamp": TIME, "hand/position": path}
+    for tables, unit in ((joints, "rad"), (joints | {"hand/orientation": turn}, "m")):
+        axes = parse_yaml(draft(Path("hand.mcap"), tables=tables).text)["axes"]
+        assert [axis["signals"]["position"]["unit"] for axis in axes] == [unit] * 3

@@ -146,6 +146,23 @@ def test_a_word_for_a_torque_or_a_target_is_told_by_what_the_place_does(late):
         assert groups == {str(i): {"position": (f"q_{i}", None), signal: (f"tq_{i}", None)} for i in range(2)}
 
 
+@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("names", [("Current {}", "Target {}"), ("{}_curr", "{}_ref"), ("current{}", "goal{}")])
+def test_current_beside_target_is_the_place_where_it_follows_and_else_a_current(names, seed):
+    """Drawn axes, some rows behind what is asked of them, in drawn units; a drawn current beside the same target."""
+    rng = np.random.default_rng(seed)
+    late, scale = int(rng.integers(0, 20)), 10.0 ** rng.uniform(-2.0, 4.0)
+    wave = np.sin(np.outer(T, rng.uniform(0.5, 1.5, 2)) + rng.uniform(0.0, 6.0, 2)).sum(axis=1)
+    asked = scale * (wave + rng.uniform(-2.0, 2.0))
+    place = asked[np.maximum(np.arange(len(T)) - late, 0)] + 1e-3 * scale * rng.standard_normal(len(T))
+    current = rng.uniform(0.5, 5.0) * np.gradient(np.gradient(wave)) / 4e-6 + 0.2 * rng.standard_normal(len(T))
+    measured, target = (name.format(axis) for name, axis in zip(names, "XX", strict=True))
+    found = placed({measured: place, target: asked}, None, [])
+    assert {p[0]: signal for p, (signal, _) in found.items()} == {measured: "position", target: "reference"}
+    for more in ({}, {"position X": place}):
+        assert placed({measured: current, target: asked, **more}, None, [])[measured, None][0] == "effort"
+
+
 @pytest.mark.parametrize("seed", range(4))
 def test_a_matrix_that_holds_other_columns_is_a_table_and_no_joints(seed):
     draw = np.random.default_rng(seed)
