@@ -159,19 +159,15 @@ def _beside(found: Mapping[Place, tuple[str, str]], tables: Tables) -> dict[Plac
 
 def _asked(found: Mapping[Place, tuple[str, str]], tables: Tables) -> dict[Place, tuple[str, str]]:
     """Return the signals with what may be an effort, or a place, as the place that its axis lacks where it is near."""
-    signals = {what: values_of(p, tables) for p, what in found.items()}
-
-    def place(p: Place, axis: str) -> tuple[str, str] | None:
-        y = values_of(p, tables)
-        for signal, beside in {TWOFOLD[word] for word in words_of(p[0]) if word in TWOFOLD}:
-            x = signals.get((beside, axis), np.zeros(0))
-            near = 0 < len(x) == len(y) and float(np.sqrt(np.mean((x - y) ** 2))) < NEAR * travel(x)
-            if near and (signal, axis) not in signals:
-                return signal, axis
-        return None
-
-    unsure = {p: axis for p, (signal, axis) in found.items() if signal == "effort" and named(p[0]).unit not in FORCES}
-    return {**found, **{p: what for p, axis in unsure.items() if (what := place(p, axis)) is not None}}
+    signals, out = {what: values_of(p, tables) for p, what in found.items()}, dict(found)
+    efforts = [(p, a) for p, (signal, a) in found.items() if signal == "effort" and named(p[0]).unit not in FORCES]
+    unsure = [(p, axis, *TWOFOLD[word]) for p, axis in efforts for word in words_of(p[0]) if word in TWOFOLD]
+    for p, axis, lacked, beside in unsure:
+        x, y = signals.get((beside, axis), np.zeros(0)), values_of(p, tables)
+        near = 0 < len(x) == len(y) and float(np.sqrt(np.mean((x - y) ** 2))) < NEAR * travel(x)
+        if near and (lacked, axis) not in signals:
+            out[p] = lacked, axis
+    return out
 
 
 def _says_place(name: str) -> bool:
