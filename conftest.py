@@ -51,7 +51,8 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     """
     if config.args_source is config.ArgsSource.TESTPATHS:
         order = {config.rootpath / path: k for k, path in enumerate(config.getini("testpaths"))}
-        items.sort(key=lambda item: next(order[path] for path in item.path.parents if path in order))
+        first = {path: next(order[p] for p in path.parents if p in order) for path in {item.path for item in items}}
+        items.sort(key=lambda item: first[item.path])
     paths = {item.path for item in items if item.get_closest_marker("flaky")}
     hidden = sorted(str(path) for path in paths if "flaky" not in path.read_text())
     if hidden:

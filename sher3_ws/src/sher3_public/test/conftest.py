@@ -7,11 +7,8 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
-import sher3.gap as gap
 
 sys.path.extend(str(Path(__file__).parents[2] / room / "test") for room in ("sher3_chain", "sher3_machines"))
-
-from drawn_arms import drawn_xml, logged
 
 
 @pytest.fixture(scope="session")
@@ -22,6 +19,8 @@ def more():
 
 @pytest.fixture(scope="session")
 def log(more):
+    from drawn_arms import drawn_xml, logged  # here: the process that hands out tests reads this file, and needs none
+
     xml = drawn_xml(np.random.default_rng(6), joints=2)
     robot = ElementTree.fromstring(xml)
     (joint,) = [j for j in robot.iter("joint") if j.get("name") == "shoulder"]
@@ -31,4 +30,6 @@ def log(more):
 
 @pytest.fixture(scope="session")
 def answer(log):
+    import sher3.gap as gap
+
     return gap.diagnose(log.xml, log.time, log.ctrl, log.qpos)
