@@ -89,8 +89,8 @@ def test_processes_in_wall_time_command_the_same(recorded, expected, domain, tmp
     while reached[-1] < last and len(reached) <= PLAYS:
         found = in_processes(recorded, nodes, domain, tmp_path)
         reached.append(min((number for name, number in expected if (name, number) not in found), default=last))
-        whole = {key for key in expected if key[1] < min(reached[-1], last)}
-        assert {key: found[key] for key in whole} == {key: expected[key] for key in whole}
+        end = min(reached[-1], last)
+        assert {k: v for k, v in found.items() if k[1] < end} == {k: v for k, v in expected.items() if k[1] < end}
     assert max(reached) >= last, f"commands before the first that was left out, each play: {reached[1:]}"
 
 

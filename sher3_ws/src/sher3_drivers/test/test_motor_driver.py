@@ -63,8 +63,8 @@ def test_the_cycle_on_one_channel_of_every_back_end(open_pair):
 def test_drives_that_get_their_power_late_are_waited_for_and_run_in_real_time(tmp_path, monkeypatch):
     """The two sides in two threads on the local link, the drives half a second after the driver.
 
-    A busy computer may leave either thread waiting for longer than the 0.3 s in which a drive answers, and once for 2 s
-    (a computer that was held up as a whole): after 20 s an answer is lost.
+    A busy computer may leave either thread waiting for longer than the 0.3 s in which a drive answers, and once no
+    answer came for 2 s, nobody knows why: after 20 s it is lost.
     """
     monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path))
     settings = default_settings().model_copy(update={"sdo_limit": 20.0})
