@@ -41,8 +41,9 @@ from sher3_safety.runs.matrix import MatrixResult
 SPEED_UP, WATCHED, HELD, STILL = 2.6, 0.5, 0.3, 0.3
 """Seconds: from the start to the fault; of its observation; for which a process is held; and of the rest afterwards, in
 which hand and foot stay and a robot that has stopped must not move. With busy processes the rest is observed too."""
-TRIES = 4
-"""Most starts of a case: on a busy machine the robot may have stopped before the fault."""
+TRIES = 8
+"""Most starts of a case: on a busy machine the robot may have stopped before the fault, four times in one cell of a run
+of the tests."""
 PATIENCE, RUN_LIMIT = 20.0, 900.0
 """Seconds: longest start of a robot; and of all cases together, after which further ones are not begun."""
 HAND_GAP = 100_000_000
