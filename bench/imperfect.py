@@ -36,7 +36,7 @@ from sher3_diagnosis import diagnose
 from sher3_diagnosis.finding import LIBRARY, OUTSIDE, Item
 from sher3_diagnosis.judge.calibration.calibration import FILE, in_force
 from sher3_diagnosis.judge.costs import DEFAULT
-from sher3_diagnosis.judge.evidence.scales import of_whole
+from sher3_diagnosis.judge.evidence.scales import share_of_whole
 from sher3_diagnosis.judge.probabilities import judged_together
 from sher3_diagnosis.judge.status import answer_to, status_of
 from sher3_diagnosis.machine import Machine
@@ -263,7 +263,7 @@ def spread_of(rows: Sequence[Seen]) -> str:
         left: dict[str, list[float]] = {}
         for x in (x for x in row.seen.items if x["index"] is not None):
             right = answer_of(row.seen, x, row.seen) == LIBRARY
-            left.setdefault(x["channel"], []).append(math.log(of_whole(x["numbers"])) if right else math.nan)
+            left.setdefault(x["channel"], []).append(math.log(share_of_whole(x["numbers"])) if right else math.nan)
         off += [float(np.mean(x)) - math.log(row.share) for x in left.values()]
     told = np.array([x for x in off if math.isfinite(x)])
     return f"mean {told.mean():.1f}, standard deviation {told.std():.1f} (n {len(told)})" if len(told) else "none"

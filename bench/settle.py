@@ -134,7 +134,7 @@ def settled(seed: int, kind: str, robot: Robot) -> Settled | None:
             f"{' or '.join(map(named, together))} {after[-1][0]:.2f} {'right' if right else 'wrong'}"
         )
         asked = verdict.next_experiment
-        if after[-1][0] >= SURE or verdict.untold:
+        if after[-1][0] >= SURE or verdict.unseparated_rivals:
             break
     print(said, flush=True)
     return Settled(bet.probability, expected, reached[0], tuple(after))

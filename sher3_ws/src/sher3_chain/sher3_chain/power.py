@@ -32,16 +32,16 @@ def hidden_share(evidence: Evidence, channel: Channel, signal: Signal) -> float:
     return float(floor / rms) if rms > 0.0 else np.inf
 
 
-def unjudged(finding: Finding, signal: Signal) -> dict[Channel, str]:
+def unjudgeable(finding: Finding, signal: Signal) -> dict[Channel, str]:
     """Return a sentence for each balance of a part, where the floor eats the signal of all of them; else nothing."""
     found = eaten(finding, signal)
     balances = [c for c in finding.evidence.channels if c.stage == BALANCE]
     if finding.significant or len(found) < len(balances):
         return {}
-    return {c: f"cannot be judged: {said(c, share)}" for c, share in found.items()}
+    return {c: f"cannot be judged: {power_note(c, share)}" for c, share in found.items()}
 
 
-def said(channel: Channel, share: float) -> str:
+def power_note(channel: Channel, share: float) -> str:
     """Return in words why the absence of a cause cannot be shown, and which record would show it."""
     hidden = f"what nobody can foresee at {channel.actuator} is {share:.2g} of its signal, and a cause would hide in it"
     return f"{hidden}; a higher rate, larger or slower motion, or repeats of one motion would tell"

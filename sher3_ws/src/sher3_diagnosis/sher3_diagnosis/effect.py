@@ -208,7 +208,7 @@ class Effect:
         """Return whether the runs can hold a shape that a finer search came to; default any."""
         return True
 
-    def of_model(self, shape: Shape) -> bool:
+    def scales_model(self, shape: Shape) -> bool:
         """Return whether a shape is a share of what the model says: where that is found from the data, none is told."""
         return False
 

@@ -141,7 +141,7 @@ class Machine(ABC, Generic[R, E]):
         """Return how noisy the readings of every place are; default none, as of tables that have no clock."""
         return ()
 
-    def unjudged(self, finding: Finding[E]) -> dict[Channel, str]:
+    def unjudgeable(self, finding: Finding[E]) -> dict[Channel, str]:
         """Return why channels of a part without a gap cannot be judged: their floor hides what is looked for.
 
         Default none. Where there is any, no gap elsewhere does not make a verdict of no gap.

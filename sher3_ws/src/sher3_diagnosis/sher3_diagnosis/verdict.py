@@ -227,7 +227,7 @@ class Verdict(_Model):
         return found if len(found) > 1 and found[0] is self.places[0].bet else []
 
     @property
-    def untold(self) -> list[str]:
+    def unseparated_rivals(self) -> list[str]:
         """The rivals of the next experiment, where all are one answer: none that was rehearsed tells them apart."""
         one = {c.effect for a in self.one_answer for c in a.causes}
         rivals = self.next_experiment.separates if self.next_experiment else []

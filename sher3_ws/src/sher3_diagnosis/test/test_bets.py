@@ -5,7 +5,7 @@ from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.finding import Candidate, ExactFinding, Item, Judged
 from sher3_diagnosis.flow import diagnose
 from sher3_diagnosis.judge.bets import NONE, exact_place, placed, shares
-from sher3_diagnosis.judge.probabilities import of_first
+from sher3_diagnosis.judge.probabilities import first_place_odds
 from sher3_diagnosis.report.odds import answered, odds, sizes
 from sher3_diagnosis.report.summary import five_lines
 from sher3_diagnosis.reporter import Reporter
@@ -60,8 +60,8 @@ def test_an_exact_stage_without_causes_is_outside():
     stage = ExactFinding(WHERE, [], Interval(value=0.0), LEFT)
     assert [a.answer for a in exact_place(stage, 0.0).answers] == ["outside_library"]
     known = exact_place(ExactFinding(WHERE, [cause()], Interval(value=0.97), LEFT), 0.9)
-    assert of_first([known]) == pytest.approx({"command_delay:all": 0.9, "outside_library": 0.1})
-    assert of_first([]) == {"no_gap": 1.0}
+    assert first_place_odds([known]) == pytest.approx({"command_delay:all": 0.9, "outside_library": 0.1})
+    assert first_place_odds([]) == {"no_gap": 1.0}
 
 
 @pytest.mark.parametrize("size, without", [(5.0, ()), (5.0, ("direction",)), (5.0, ("direction", "speed")), (0.0, ())])

@@ -7,7 +7,7 @@ import pytest
 from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.finding import Candidate, Item
 from sher3_diagnosis.judge.calibration.calibration import in_force
-from sher3_diagnosis.judge.evidence.scales import LEAST_OWN, unexplained
+from sher3_diagnosis.judge.evidence.scales import LEAST_OWN, unexplained_share
 from sher3_diagnosis.judge.level import LAWFUL, LEVELS, USUAL, at_level, lawful, level_weights
 from sher3_diagnosis.judge.probabilities import judged, judged_together
 from sher3_diagnosis.verdict import Interval
@@ -91,5 +91,5 @@ def test_the_less_of_what_is_left_no_function_explains_the_likelier_is_a_foreign
 def test_what_is_left_below_the_floor_is_no_function():
     """A remainder of 0.01 of the floor's power: what is explained of it is a hundredth at most."""
     small = NUMBERS | {"left": 0.01, "power": 1.0, "law": 0.01, "anything": 0.0}
-    assert unexplained(small) == pytest.approx(0.99)
-    assert unexplained(small | {"power": 1e4}) == LEAST_OWN
+    assert unexplained_share(small) == pytest.approx(0.99)
+    assert unexplained_share(small | {"power": 1e4}) == LEAST_OWN

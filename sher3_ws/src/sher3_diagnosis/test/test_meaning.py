@@ -12,7 +12,7 @@ from sher3_diagnosis.judge.items import items_of
 from sher3_diagnosis.judge.meaning import (
     OPEN,
     linear_in,
-    of_no_size,
+    may_be_zero,
     open_sizes,
     says_nothing,
     sizes_of,
@@ -68,8 +68,8 @@ def test_a_shape_that_does_something_by_itself_has_sizes_where_its_coefficients_
     term.fixed = [{"channel": np.ones(3)}]
     assert sizes_of(term, found) == ["size", "inverse", "place", "shape"]
     told = cause(size=(-1.0, 2.0), inverse=(-1.0, 2.0), place=(-1.0, 2.0), shape=(2.0, 4.0))
-    assert not of_no_size(term, found, told)
-    assert of_no_size(Term(Law("law", "spring", "one")), found, told)
+    assert not may_be_zero(term, found, told)
+    assert may_be_zero(Term(Law("law", "spring", "one")), found, told)
 
 
 def test_an_effect_that_is_there_by_a_choice_has_no_size():
@@ -80,8 +80,8 @@ def test_an_effect_that_is_there_by_a_choice_has_no_size():
 
 def test_a_cause_whose_sizes_hold_zero_has_none():
     term, found = Term(Law("law", "spring", "one")), np.array([2.0, 4.0])
-    assert of_no_size(term, found, cause(size=(-1.0, 3.0), place=(1.0, 2.0)))
-    assert not of_no_size(term, found, cause(size=(1.0, 3.0), place=(-1.0, 2.0)))
+    assert may_be_zero(term, found, cause(size=(-1.0, 3.0), place=(1.0, 2.0)))
+    assert not may_be_zero(term, found, cause(size=(1.0, 3.0), place=(-1.0, 2.0)))
 
 
 @pytest.mark.parametrize("least", [-1.0, 1.0])

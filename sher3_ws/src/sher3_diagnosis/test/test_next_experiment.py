@@ -67,9 +67,9 @@ def test_rivals_that_no_experiment_tells_apart_are_one_answer(alike):
     assert verdict.one_answer == answers[:2]
     assert 0.95 < asked.expected_odds <= sum(a.probability for a in verdict.one_answer)
     assert asked.predicted_separation == pytest.approx(0.0, abs=1e-6)
-    assert verdict.untold == asked.separates
+    assert verdict.unseparated_rivals == asked.separates
     told = diagnose(Foreseeing(), alike).verdict
-    assert (told.one_answer, told.untold) == ([], [])
+    assert (told.one_answer, told.unseparated_rivals) == ([], [])
 
 
 def test_the_odds_that_the_library_lacks_the_cause_stay_as_they_are(alike):

@@ -50,7 +50,7 @@ class RequestError(Sher3Error):
     """What was asked for makes no sense: no such effect, two cases of one name, a cluster that does not answer."""
 
 
-def of_the_robot(case: Path, instead: str) -> Path:
+def require_sher_case(case: Path, instead: str) -> Path:
     """Return a case of the SHER.
 
     Args:

@@ -9,7 +9,7 @@ import pytest
 from invoking import invoke
 from sher3_chain.manipulator.causes.links import OTHER_ROBOT
 from sher3_gap_cli.app import app
-from sher3_gap_cli.watch.judged import OK, STALE, WARN, judged, of_actuators
+from sher3_gap_cli.watch.judged import OK, STALE, WARN, actuator_commands, judged
 from sher3_gap_cli.watch.trajectory import Point, set_points
 from sher3_gap_cli.watch.window import Window
 from sher3_public import one_call
@@ -118,8 +118,8 @@ def test_a_command_of_joints_is_put_in_the_order_of_the_actuators():
         '<mujoco><worldbody><body><joint name="a" axis="0 1 0"/><geom size=".1"/><body><joint name="b" axis="0 1 0"/>'
         '<geom size=".1"/></body></body></worldbody><actuator><motor joint="b"/><motor joint="a"/></actuator></mujoco>'
     )
-    assert of_actuators(source_of(xml).bodies, ("a", "b"), np.array([[1.0, 2.0]])).tolist() == [[2.0, 1.0]]
-    assert of_actuators(source_of(ARM).bodies, ("turn",), np.array([[1.0]])) is None
+    assert actuator_commands(source_of(xml).bodies, ("a", "b"), np.array([[1.0, 2.0]])).tolist() == [[2.0, 1.0]]
+    assert actuator_commands(source_of(ARM).bodies, ("turn",), np.array([[1.0]])) is None
 
 
 def test_what_is_waited_for_is_said():

@@ -9,7 +9,7 @@ from typing import Any
 
 from pydantic import ValidationError
 from sher3_chain.manipulator.description import ManipulatorDescription
-from sher3_chain.manipulator.draft import of_arm
+from sher3_chain.manipulator.draft import arm_description
 from sher3_chain.manipulator.kind import arm_of
 from sher3_diagnosis.machine import Machine
 from sher3_machines.drafting.draft import drafted
@@ -69,7 +69,7 @@ def case_of_tables(model: object, tables: Sequence[Tables], rate: float | None, 
     if source is not None:
         drives = of_tables.drives_of(source.bodies, tables[0], data, stated)
         period = period_of_log(data["time"], tables[0])
-        data = of_arm(data, source.bodies, guesses, drives, stated.simulated, period)
+        data = arm_description(data, source.bodies, guesses, drives, stated.simulated, period)
         source = source if data["kind"] == "manipulator" else None  # no model belongs to servos by themselves
     if source is not None:
         data["inertias"] = stated.inertias

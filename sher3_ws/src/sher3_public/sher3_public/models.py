@@ -41,7 +41,7 @@ def source_of(model: object) -> Source:
     if isinstance(model, str) and "<" in model:
         return Source("model", bodies_of(model, "model"), model)
     if isinstance(model, str | os.PathLike):
-        return _of_file(Path(model))
+        return _file_source(Path(model))
     kind = type(model).__name__
     if kind == "MjSpec":
         spec: Any = model
@@ -52,7 +52,7 @@ def source_of(model: object) -> Source:
     raise InputError("the model is of no known kind", value=kind, remedy=remedy)
 
 
-def _of_file(path: Path) -> Source:
+def _file_source(path: Path) -> Source:
     if path.suffix == BINARY:
         return Source(path.stem, read_bodies(path))
     try:

@@ -106,16 +106,16 @@ class TableKind(Kind[D, Readings], Machine[Readings, TableEvidence]):
         """Return how causes are looked for."""
         return self.search
 
-    def said(self, finding: Finding[TableEvidence]) -> list[str]:
+    def notes_on(self, finding: Finding[TableEvidence]) -> list[str]:
         """Return notes of this kind on one table; default none."""
         return []
 
     def remarks(self, finding: Finding[TableEvidence]) -> list[str]:
         """Return what the kind and the pages of the causes say, and how far the zeros of runs are apart."""
         zeros = zeros_in_words(finding.evidence, finding.attribution.fit)
-        return [*self.said(finding), *causes_in_words(finding), *zeros]
+        return [*self.notes_on(finding), *causes_in_words(finding), *zeros]
 
-    def unjudged(self, finding: Finding[TableEvidence]) -> dict[Channel, str]:
+    def unjudgeable(self, finding: Finding[TableEvidence]) -> dict[Channel, str]:
         """Say where the scatter of the readings hides whatever is looked for."""
         table = finding.evidence.table
         why = "" if finding.significant else eaten(table)

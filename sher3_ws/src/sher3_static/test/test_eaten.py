@@ -26,13 +26,13 @@ def found(noise, seed=1):
 def test_no_gap_is_a_finding_where_the_readings_follow(seed):
     done = found(0.1, seed)
     assert done.verdict.status == "no_gap"
-    assert not done.machine.unjudged(done.findings[0])
+    assert not done.machine.unjudgeable(done.findings[0])
 
 
 @pytest.mark.parametrize("seed", range(5))
 def test_where_the_readings_scatter_nothing_is_said(seed):
     """1.5 N of noise are half of the 3 N by which the force differs: an error of 10 % would hide in it."""
     done = found(1.5, seed)
-    (why,) = done.machine.unjudged(done.findings[0]).values()
+    (why,) = done.machine.unjudgeable(done.findings[0]).values()
     assert "cannot be judged: readings of cell scatter by 0." in why and "better reference" in why
     assert done.verdict.status == "outside_library" and done.verdict.unexplained.signature == why

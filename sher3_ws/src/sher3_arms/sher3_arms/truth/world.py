@@ -183,7 +183,7 @@ def record(urdf: str, fault: Fault, seconds: float, rng: np.random.Generator) ->
         position[k] = data.qpos[at_motor]
         if not (np.abs(position[k] - q[k]) < ASTRAY).all():
             raise Unstable
-        link[k] = _of_link(real, data, fault, position[k])
+        link[k] = _link_positions(real, data, fault, position[k])
         after = min(k + 1, len(time) - 1)
         for part_of in range(fine):
             share = part_of / fine
@@ -213,7 +213,7 @@ def shows(fault: Fault, found: Record) -> bool:
     return all(np.ptp(apart[:, part.joint]) > CROSSED * part.size for part in gaps)
 
 
-def _of_link(real: Any, data: Any, fault: Fault, position: np.ndarray) -> np.ndarray:
+def _link_positions(real: Any, data: Any, fault: Fault, position: np.ndarray) -> np.ndarray:
     """Return the positions of the links (k,): those of the motors, and what a joint behind one gives."""
     out = position.copy()
     if fault.kind in BEHIND:

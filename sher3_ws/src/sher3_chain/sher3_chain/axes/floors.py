@@ -15,10 +15,10 @@ from sher3_chain.floors.innovation import NOTHING, chain_floors, plain_innovatio
 
 def floors_of(records: Sequence[AxisView], found: Sequence[Residuals], repeats: bool) -> list[Floors]:
     """Return the floor per record and channel of one axis; `repeats` of one motion, or not."""
-    return chain_floors(records, found, repeats, of_readings, unforeseen)
+    return chain_floors(records, found, repeats, reading_floors, innovation_floor)
 
 
-def unforeseen(view: AxisView, residual: Residual, channel: Channel) -> Array:
+def innovation_floor(view: AxisView, residual: Residual, channel: Channel) -> Array:
     """Return the standard deviation (1,) of white noise with the innovation of a residual, in the residual's unit.
 
     A straight line, or the past motion and known inputs: whichever foresees more. Inputs also foresee a part of the
@@ -27,7 +27,7 @@ def unforeseen(view: AxisView, residual: Residual, channel: Channel) -> Array:
     return np.minimum(plain_innovation(view, residual, channel), foreseen(view.run, residual, view.direction))
 
 
-def of_readings(view: AxisView) -> Floors:
+def reading_floors(view: AxisView) -> Floors:
     """Return what the readings alone make: white noise of the encoder, or of its count, through every law of motion.
 
     An error of the place is one of speed and acceleration, and a law makes a force of them: the nominal one, and a

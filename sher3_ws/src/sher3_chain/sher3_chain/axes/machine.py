@@ -21,7 +21,7 @@ from sher3_machines.errors import MachineError
 from sher3_machines.thresholds import BLOCKS
 
 from sher3_chain.axes.causes.confounded_laws import indistinct_notes, with_indistinct, with_second_pole
-from sher3_chain.axes.causes.detection_limits import unseen_note
+from sher3_chain.axes.causes.detection_limits import one_encoder_note
 from sher3_chain.axes.causes.plan import AXIS
 from sher3_chain.axes.causes.refine import refine_free
 from sher3_chain.axes.command.law import LAW, is_law, law_of_axis
@@ -37,7 +37,7 @@ from sher3_chain.joint.description import AxesDescription, Axis, Gravity
 from sher3_chain.joint.own_unit import in_own_unit, own_unit_note, renamed
 from sher3_chain.joint.record import AxesRun
 from sher3_chain.joint.true_force import in_true_force
-from sher3_chain.power import unjudged
+from sher3_chain.power import unjudgeable
 from sher3_chain.readings.level import stop_note
 from sher3_chain.readings.wrong import without_wrong, wrong_readings
 from sher3_chain.search.changes import change_notes
@@ -137,9 +137,9 @@ class Axes(Chain[AxisEvidence]):
             *([again.note] if again else []),
         ]
 
-    def unjudged(self, finding: Finding[AxisEvidence]) -> dict[Channel, str]:
+    def unjudgeable(self, finding: Finding[AxisEvidence]) -> dict[Channel, str]:
         """Say where the floor of an axis without a gap eats its force, or what a servo was asked."""
-        return unjudged(finding, partial(signal_of, finding.evidence))
+        return unjudgeable(finding, partial(signal_of, finding.evidence))
 
     def reporter(self) -> AxesReporter:
         """Return the part of this machine in a report."""
@@ -301,7 +301,7 @@ def carried_by_others(finding: Finding[AxisEvidence], axes: Sequence[Axis]) -> l
 def blind_spots(finding: Finding[AxisEvidence]) -> list[str]:
     """Return what the recorded signals cannot tell."""
     axis = finding.evidence.axis
-    out = [] if axis.signals.load is not None else [unseen_note(finding.evidence, finding.attribution.fit)]
+    out = [] if axis.signals.load is not None else [one_encoder_note(finding.evidence, finding.attribution.fit)]
     if axis.servo:
         unread = axis.signals.effort is not None and not finding.evidence.not_judged
         why = "its effort is not looked at (`command_law: {kind: force}` does)" if unread else "force not recorded"

@@ -26,7 +26,7 @@ from sher3_chain.joint.conditions import Condition, conditions_of, confounded_co
 from sher3_chain.joint.description import Axis, ChainDescription
 from sher3_chain.joint.record import READINGS, AxesRun
 from sher3_chain.readings.wrong import wrong_readings
-from sher3_chain.search.changes import contrasted, of_runs
+from sher3_chain.search.changes import contrasted, select_runs
 
 E = TypeVar("E", bound=ChainEvidence)
 NO_REPEATS = (
@@ -70,7 +70,7 @@ class Chain(Machine[AxesRun, E]):
         if not parted:
             return self.causes(evidence, candidates, left_over, say)
         kept = reference_runs([c for c, _ in parted], [run.name for run in evidence.runs])
-        reference = of_runs(evidence, evidence.views_of(kept))
+        reference = select_runs(evidence, evidence.views_of(kept))
         left = partial(down_to_floor, reference.channels, reference)
         common = self.causes(reference, Candidates(reference, candidates.effects), left, say)
         say("contrasting conditions")

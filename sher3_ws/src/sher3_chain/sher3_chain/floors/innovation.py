@@ -58,11 +58,11 @@ def foresight(run: AxisSignals) -> float:
 
     The filter makes neighbours alike, so that they foresee a part of the noise.
     """
-    return _of_clock(run.ticks, run.stride, run.period, run.bandwidth)
+    return _white_noise_innovation(run.ticks, run.stride, run.period, run.bandwidth)
 
 
 @lru_cache(maxsize=64)
-def _of_clock(ticks: int, stride: int, period: float, bandwidth: float) -> float:
+def _white_noise_innovation(ticks: int, stride: int, period: float, bandwidth: float) -> float:
     noise = np.random.default_rng(0).normal(size=(max(ticks, NOISE_SAMPLES, ON_GRID * stride), 1))
     seen = low_pass(noise, period, bandwidth)[::stride]
     return float(innovation(Residual(seen, np.ones(len(seen), dtype=bool)))[0] / seen.std())

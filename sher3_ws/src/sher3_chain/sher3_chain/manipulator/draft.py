@@ -55,11 +55,12 @@ def draft_arm(path: Path, model: Path, rate: float | None = None, tables: Tables
     tables = renamed(names, tables) if names else tables
     chain = drafted(path, tables, rate, guesses, held=True)
     return written(
-        as_recorded(of_arm(chain, bodies, guesses, period=period_of_log(chain["time"], tables)), names), guesses
+        as_recorded(arm_description(chain, bodies, guesses, period=period_of_log(chain["time"], tables)), names),
+        guesses,
     )
 
 
-def of_arm(
+def arm_description(
     data: Mapping[str, Any],
     model: Bodies,
     guesses: list[str],

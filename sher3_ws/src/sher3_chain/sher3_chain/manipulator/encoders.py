@@ -109,11 +109,11 @@ def _with(positions: Array, row: int, column: Array) -> Array:
 
 def _better(motor: AxisSignals, load: AxisSignals, row: int, model: ArmModel, coupling: Array) -> bool:
     """Whether the force balance of a joint is markedly better with the position of its motor than with its link's."""
-    by_motor, by_load = (_unbalanced(x, row, model, coupling) for x in (motor, load))
+    by_motor, by_load = (_balance_residual(x, row, model, coupling) for x in (motor, load))
     return by_motor < (1.0 - ALIGNED) * by_load
 
 
-def _unbalanced(run: AxisSignals, row: int, model: ArmModel, coupling: Array) -> float:
+def _balance_residual(run: AxisSignals, row: int, model: ArmModel, coupling: Array) -> float:
     """Sum of squares that needed force, friction and a constant leave of a joint's effort."""
     if run.effort is None:
         return 0.0

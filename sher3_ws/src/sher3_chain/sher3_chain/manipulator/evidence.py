@@ -234,7 +234,7 @@ def _put_right(
     return out
 
 
-def of_channel(
+def select_channel(
     evidence: ArmMotionEvidence, channel: Channel, beside: Sequence[Mapping[Channel, Array]] = ()
 ) -> Evidence:
     """Return the evidence of one channel alone.

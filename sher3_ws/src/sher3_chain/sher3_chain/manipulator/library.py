@@ -6,7 +6,7 @@ from sher3_diagnosis.effect import Effect
 from sher3_effects import pages
 
 
-def of_joints(facts: set[str] | None = None) -> list[Effect]:
+def joint_pages(facts: set[str] | None = None) -> list[Effect]:
     """Return the pages for a joint of an arm: its own, and those of an axis that it does not replace."""
     own = pages("joint", facts)
     taken = {e.id for e in own}

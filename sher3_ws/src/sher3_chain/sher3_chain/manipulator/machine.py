@@ -37,17 +37,17 @@ from sher3_chain.manipulator.causes.lateness import (
     with_closure,
     with_late_readings,
 )
-from sher3_chain.manipulator.causes.links import of_a_sum, other_robot_notes
+from sher3_chain.manipulator.causes.links import as_sum, other_robot_notes
 from sher3_chain.manipulator.causes.payload import about_its_own
 from sher3_chain.manipulator.causes.plan import JOINT
 from sher3_chain.manipulator.causes.search import causes_of_arm
 from sher3_chain.manipulator.description import BEHIND, ManipulatorDescription
 from sher3_chain.manipulator.evidence import ArmMotionEvidence, gather_arm_motion
 from sher3_chain.manipulator.foreseen import foreseen
-from sher3_chain.manipulator.library import of_joints
+from sher3_chain.manipulator.library import joint_pages
 from sher3_chain.manipulator.model import ArmModel
 from sher3_chain.manipulator.readings.wrong import level_notes
-from sher3_chain.power import unjudged
+from sher3_chain.power import unjudgeable
 from sher3_chain.readings.level import stop_note
 from sher3_chain.readings.wrong import wrong_readings
 from sher3_chain.search.changes import change_notes
@@ -78,7 +78,7 @@ class Manipulator(Chain[ArmMotionEvidence]):
 
     def library(self) -> Sequence[Effect]:
         """Return the pages of an axis and those of a joint of an arm, and those of a servo's law."""
-        own = of_joints()
+        own = joint_pages()
         return [*own, *(e for e in pages("law") if e.id not in {x.id for x in own})]
 
     def effects(self, evidence: ArmMotionEvidence) -> Sequence[Effect]:
@@ -88,7 +88,7 @@ class Manipulator(Chain[ArmMotionEvidence]):
             facts.add("load")
         if all(j.lead is not None for j in self.described.joints):
             facts.add("lead")
-        known = of_joints(facts)
+        known = joint_pages(facts)
         contained: tuple[str, ...] = IN_GAIN if evidence.shares or evidence.scales else ()
         contained = IN_INERTIAS if self._in_inertias and not self.described.conditions else contained
         return [e for e in known if e.scales not in contained]
@@ -141,7 +141,7 @@ class Manipulator(Chain[ArmMotionEvidence]):
         causes = requantified(evidence, attribution, causes)
         causes = within_bounds(causes, attribution.named, self.effects(evidence))
         terms = zip(map(with_late_readings, causes), (term for term, _ in attribution.named), strict=True)
-        causes = [with_closure(of_a_sum(cause, term, self.model), term.shape) for cause, term in terms]
+        causes = [with_closure(as_sum(cause, term, self.model), term.shape) for cause, term in terms]
         weak = {j.name for j in self.described.joints if j.by_its_law}
         alike = {e.id: (e.id, *e.indistinct) for e in self.effects(evidence)}
         causes = [with_hidden(c, alike[c.effect]) if c.actuator in weak and c.effect in alike else c for c in causes]
@@ -193,10 +193,10 @@ class Manipulator(Chain[ArmMotionEvidence]):
         own = evidence.inertias is None or evidence.shares or evidence.scales
         return [] if own or evidence.inertias is None else evidence.inertias.by_place(self.model)
 
-    def unjudged(self, finding: Finding[ArmMotionEvidence]) -> dict[Channel, str]:
+    def unjudgeable(self, finding: Finding[ArmMotionEvidence]) -> dict[Channel, str]:
         """Say where the floors of all joints eat their efforts."""
         views = finding.evidence.data.views
-        return unjudged(finding, lambda r, site, ok: views[r].effort[ok, views[r].row(site)])
+        return unjudgeable(finding, lambda r, site, ok: views[r].effort[ok, views[r].row(site)])
 
     def rehearsals(self, evidence: ArmMotionEvidence, felt: Collection[str]) -> Iterator[Rehearsal]:
         """Yield the recorded motion with a known mass on the last link, where the inertias are those of the model."""

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.effect import Effect
 from sher3_diagnosis.finding import Findings
-from sher3_diagnosis.report.odds import told
+from sher3_diagnosis.report.odds import parameter_text
 from sher3_diagnosis.report.summary import shown_parameters, significant
 from sher3_diagnosis.reporter import EMPTY, Output, Table
 from sher3_diagnosis.verdict import Cause
@@ -16,7 +16,7 @@ from sher3_diagnosis.words import place, words
 
 from sher3_chain.chain.reporter import ChainReporter
 from sher3_chain.manipulator.evidence import ArmMotionEvidence
-from sher3_chain.manipulator.library import of_joints
+from sher3_chain.manipulator.library import joint_pages
 
 OTHER = "other"
 HEADS: Mapping[str, Sequence[str]] = {
@@ -52,7 +52,7 @@ class ManipulatorReporter(ChainReporter[ArmMotionEvidence]):
             return None
         evidence = diagnosis.findings[0].evidence
         names = [joint.name for joint in evidence.described.joints]
-        return table_of(diagnosis.verdict.causes, of_joints(), names, evidence.judged)
+        return table_of(diagnosis.verdict.causes, joint_pages(), names, evidence.judged)
 
     def output(self, evidence: ArmMotionEvidence, run: int, channel: Channel) -> Output:
         """Return the effort of a joint."""
@@ -97,7 +97,7 @@ def cell(cause: Cause, sets: Mapping[str, str]) -> str:
     text, shown = words(cause.effect), []
     for name in names:
         p, label = sizes[name], f"{name.replace('_', ' ')} " * (len(names) > 1)
-        shown.append(f"{label}{told(p)}{'' if significant(p) else ', size not told'}")
+        shown.append(f"{label}{parameter_text(p)}{'' if significant(p) else ', size not told'}")
     text += f" {', '.join(shown)}" if shown else ""
     text += f" in {cause.condition}" if cause.condition else ""
     return text + (f" or {', '.join(words(r).lower() for r in cause.rivals)}" if cause.rivals else "")

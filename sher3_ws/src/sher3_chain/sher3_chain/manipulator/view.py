@@ -101,18 +101,18 @@ class MotionView(ChainView):
             law = np.vstack([np.eye(LINKS_OF_PAYLOAD), np.column_stack([-own, *both])])
             columns = self._columns_of(link)
             forces = (columns.reshape(-1, PARAMETERS) @ law).reshape(*columns.shape[:2], LINKS_OF_PAYLOAD)
-            self._payload[link, centre] = self._of_joints(forces)
+            self._payload[link, centre] = self._forces_by_joint(forces)
         return self._payload[link, centre]
 
     def link(self, link: str) -> dict[str, Array]:
         """Return joint -> (g,) force that a link, as its model has it, needs of every joint."""
         own = self.model.of(link)
-        need = self._of_joints(self.regressor_of_joints[..., own] @ self.model.inertial[own, None])
+        need = self._forces_by_joint(self.regressor_of_joints[..., own] @ self.model.inertial[own, None])
         return {joint: force[:, 0] for joint, force in need.items()}
 
     def per_inertial(self, link: str) -> dict[str, Array]:
         """Return joint -> (g, 10) force per inertial parameter of a link."""
-        return self._of_joints(self.regressor_of_joints[..., self.model.of(link)])
+        return self._forces_by_joint(self.regressor_of_joints[..., self.model.of(link)])
 
     def orders(self, joint: str, count: int) -> list[float]:
         """Return the periods per turn that stand out in what the model leaves of a joint's effort, the strongest first.
@@ -134,7 +134,7 @@ class MotionView(ChainView):
             self._columns[link] = np.ascontiguousarray(self.regressor_of_joints[..., self.model.of(link)])
         return self._columns[link]
 
-    def _of_joints(self, forces: Array) -> dict[str, Array]:
+    def _forces_by_joint(self, forces: Array) -> dict[str, Array]:
         """Return joint -> (g, p) of forces on the joints (g, k, p), as the motors feel them; those that feel any."""
         felt = self._on_motors(forces) * self.shares[:, None]
         most = np.sqrt(np.einsum("gjp,gjp->j", felt, felt))
@@ -159,7 +159,7 @@ class MotionView(ChainView):
     def rigid(self) -> Array:
         """Force that the rigid bodies of the model need on every motor, (g, k), N or N m."""
         step = np.array([j.step_inertia for j in self.joints])
-        return self._on_motors(self.model.needed(*self._of_links)[..., None])[..., 0] + step * self.acceleration
+        return self._on_motors(self.model.needed(*self._link_motion)[..., None])[..., 0] + step * self.acceleration
 
     @cached_property
     def inertial(self) -> Array:
@@ -177,7 +177,7 @@ class MotionView(ChainView):
         if losses is None:
             return np.zeros_like(self.velocity)
         dry = run.to_grid(self._dry)
-        return self._on_motors((dry + losses.in_motion(*self._of_links[:2]))[..., None])[..., 0]
+        return self._on_motors((dry + losses.in_motion(*self._link_motion[:2]))[..., None])[..., 0]
 
     @cached_property
     def _dry(self) -> Array:
@@ -190,7 +190,7 @@ class MotionView(ChainView):
         return run.over_rows(lambda late: losses.dry(q, v + late * a, a))
 
     @cached_property
-    def _of_links(self) -> tuple[Array, Array, Array]:
+    def _link_motion(self) -> tuple[Array, Array, Array]:
         """Position, velocity and acceleration of the joints on the residual grid, (g, k) each."""
         run, back = self.links, np.linalg.inv(self.coupling).T
         motion = (run.smooth[run.grid], run.velocity[run.grid], run.to_grid(run.acceleration))
@@ -199,7 +199,7 @@ class MotionView(ChainView):
 
     @property
     def _joint_position(self) -> Array:
-        return self._of_links[0]
+        return self._link_motion[0]
 
     @cached_property
     def regressor(self) -> Array:
@@ -209,7 +209,7 @@ class MotionView(ChainView):
     @cached_property
     def regressor_of_joints(self) -> Array:
         """Force per inertial parameter on every joint, (g, k, 10 links)."""
-        return self.model.regressor(*self._of_links)
+        return self.model.regressor(*self._link_motion)
 
     def _on_motors(self, forces: Array) -> Array:
         """Bring forces on the joints (g, k, p) to the motors: tau_joint = coupling^T tau_motor."""

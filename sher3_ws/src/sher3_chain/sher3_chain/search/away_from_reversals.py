@@ -21,11 +21,11 @@ SHAPED = ("friction", "lost_motion", "compliance")
 
 def borne_out(evidence: Evidence, found: Attribution) -> Attribution:
     """Return the causes without those that show at reversals alone; the others are fitted again."""
-    only = of_reversals(evidence, found.fit)
+    only = idle_away_from_reversals(evidence, found.fit)
     return found.kept(evidence, [i for i in found.causes if i not in only])
 
 
-def of_reversals(evidence: Evidence, found: Fit) -> set[int]:
+def idle_away_from_reversals(evidence: Evidence, found: Fit) -> set[int]:
     """Return the terms of a fit with dry friction that are not worth their numbers away from its reversals."""
     dry = {t.site for t in found.terms if t.effect.dry}
     judged = [i for i, t in enumerate(found.terms) if t.site in dry and t.effect.family not in SHAPED and _force(t)]

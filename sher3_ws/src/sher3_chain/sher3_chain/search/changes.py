@@ -101,7 +101,7 @@ class Common:
     coefficients: Array
 
 
-def of_runs(evidence: E, views: frozenset[int]) -> E:
+def select_runs(evidence: E, views: frozenset[int]) -> E:
     """Return the evidence of some runs alone, given by the identity of their views."""
     data = evidence.data
     kept = [r for r, view in enumerate(data.views) if id(view) in views]
@@ -134,7 +134,7 @@ def contrasted(
         trials = [t for c, views in conditions for t in _trials(evidence, current, effects, c, views, finish)]
         if not trials:
             break
-        best = _unless_common(evidence, current, min(trials, key=cost))
+        best = _prefer_common(evidence, current, min(trials, key=cost))
         worth = current.total - best.total
         if worth < NEEDED * complexity(best.terms[-1]) + PARSIMONY * _explained(evidence, best):
             break
@@ -147,7 +147,7 @@ def contrasted(
     return Attribution(current, tuple(rivals), explained, (*ranking, *none), common.nuisance)
 
 
-def _unless_common(evidence: Evidence, current: Fit, change: Fit) -> Fit:
+def _prefer_common(evidence: Evidence, current: Fit, change: Fit) -> Fit:
     """Return the effect of a change in all runs alike, where the change is not worth its numbers more than that.
 
     What the reference is too short or too quiet to tell is no change: the other runs may show it for all.
@@ -224,12 +224,12 @@ def change_notes(
     head = f"{place(next(iter(sites)))}: " if len(sites) == 1 else ""
     for condition, views in conditions:
         of = [i for i, t in enumerate(attribution.fit.terms) if t.effect.condition == str(condition)]
-        said = [_in_words(evidence, attribution.fit, i) for i in of] or [_unchanged(evidence, attribution, views)]
+        said = [_in_words(evidence, attribution.fit, i) for i in of] or [_no_change_note(evidence, attribution, views)]
         out.append(f"{head}{condition} against {condition.reference}, all else held common: {'; '.join(said)}")
     return out
 
 
-def _unchanged(evidence: Evidence, attribution: Attribution, views: frozenset[int]) -> str:
+def _no_change_note(evidence: Evidence, attribution: Attribution, views: frozenset[int]) -> str:
     """Return that nothing changed, where that was looked at, and from which size on it would have shown."""
     stages = sorted({c.stage.replace("_", " ") for c in evidence.channels})
     least = [said for i in attribution.causes if (said := _least_change(evidence, attribution.fit, i, views))]

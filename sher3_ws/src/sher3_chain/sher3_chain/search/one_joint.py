@@ -6,7 +6,7 @@ from sher3_diagnosis.attribute.candidates import possible
 from sher3_diagnosis.fit.fitting import Fit
 
 
-def of_one_joint(trial: Fit) -> bool:
+def possible_at_one_joint(trial: Fit) -> bool:
     """Return whether the new cause is possible, and all others beside it still are.
 
     Of what hides behind one encoder one cause is named: a load that rings looks like one that is thrown across a gap.

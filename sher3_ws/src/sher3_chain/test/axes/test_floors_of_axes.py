@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from sher3_chain.axes.evidence import residuals_of
-from sher3_chain.axes.floors import floors_of, of_readings
+from sher3_chain.axes.floors import floors_of, reading_floors
 from sher3_chain.axes.view import AxisView
 from sher3_chain.floors.innovation import innovation, white_behind
 from sher3_chain.readings.signals import AxisSignals
@@ -50,14 +50,14 @@ def servo(position, reference, count=0.012):
 
 def test_rounding_to_a_count_is_a_twelfth_of_its_square():
     """A servo's count of 0.012 rad: 0.012 / sqrt(12); two encoders round both."""
-    floors = of_readings(servo(np.zeros(100), np.zeros(100)))
+    floors = reading_floors(servo(np.zeros(100), np.zeros(100)))
     assert floors[MOTOR] == pytest.approx([0.012 / np.sqrt(12.0)])
     assert floors[LINK] == pytest.approx([0.012 / np.sqrt(6.0)])
 
 
 def test_rounding_of_a_position_makes_a_force_in_proportion_to_the_mass():
     run = AxisSignals("run", "run", 0.002, np.zeros((2000, 1)))
-    one, three = (of_readings(AxisView(run, axis_of(encoder_resolution=1e-6), m))[MOTOR] for m in (1.0, 3.0))
+    one, three = (reading_floors(AxisView(run, axis_of(encoder_resolution=1e-6), m))[MOTOR] for m in (1.0, 3.0))
     assert three == pytest.approx(3.0 * one)
 
 

@@ -2,7 +2,7 @@
 
 from causes_at import caused
 from lifts import friction, machine, motion, needed, run_of
-from sher3_chain.manipulator.library import of_joints
+from sher3_chain.manipulator.library import joint_pages
 from sher3_chain.manipulator.reporter import HEADS, table_of
 from sher3_diagnosis import diagnose
 from sher3_diagnosis.report.page import render
@@ -17,7 +17,7 @@ def test_each_constant_stands_in_its_column_with_interval_and_rivals():
         caused("transmission_compliance", "compliance", "A2", "compliance", 1.3e-7, "rad/(N*m)"),
         caused("backlash", "lost_motion", "A2", "width", 0.002, "rad"),
     ]
-    table = table_of(causes, of_joints(), ["A1", "A2", "A3"], ["A1", "A2"])
+    table = table_of(causes, joint_pages(), ["A1", "A2", "A3"], ["A1", "A2"])
     rows = {row[0]: dict(zip(table.heads[1:], row[1:], strict=True)) for row in table.rows}
     assert rows["A1"]["Coulomb"] == "Coulomb friction 373 N·m (336 N·m … 410 N·m) or stribeck friction"
     assert rows["A1"]["delay"].startswith("Sensor delay 3.09 ms") and rows["A1"]["viscous"].startswith("Viscous")
@@ -29,13 +29,13 @@ def test_each_constant_stands_in_its_column_with_interval_and_rivals():
 def test_a_servo_that_acts_late_or_weakly_stands_under_delay_and_gain():
     late = caused("command_delay", "timing", "A1", "reference_delay", 0.008, "s")
     weak = caused("controller_gain", "scale", "A1", "position_relative", -0.2, "1")
-    table = table_of([late, weak], [*of_joints(), *pages("law")], ["A1"], ["A1"])
+    table = table_of([late, weak], [*joint_pages(), *pages("law")], ["A1"], ["A1"])
     (row,) = (dict(zip(table.heads[1:], x[1:], strict=True)) for x in table.rows)
     assert row["delay"].startswith("Command delay 8 ms") and row["gain"].startswith("Controller gain")
 
 
 def test_a_link_with_a_payload_has_a_row_of_its_own():
-    table = table_of([caused("payload_mass", "inertia", "hand", "mass", 1.2, "kg")], of_joints(), ["A1"], ["A1"])
+    table = table_of([caused("payload_mass", "inertia", "hand", "mass", 1.2, "kg")], joint_pages(), ["A1"], ["A1"])
     assert [row[0] for row in table.rows] == ["A1", "hand"] and "1.2 kg" in table.rows[1][1]
 
 
@@ -51,5 +51,5 @@ def test_a_loss_under_load_shows_its_dry_part_and_its_share():
     lossy = caused("gear_loss", "friction", "A1", "share", 0.06, "1")
     dry = caused("gear_loss", "friction", "A1", "usual", 0.145, "N*m")
     both = lossy.model_copy(update={"parameters": {**lossy.parameters, **dry.parameters}})
-    row = table_of([both], of_joints(), ["A1"], ["A1"]).rows[0]
+    row = table_of([both], joint_pages(), ["A1"], ["A1"]).rows[0]
     assert row[3].startswith("Gear loss share 6 % (") and "usual 145 mN·m (" in row[3]

@@ -26,7 +26,7 @@ def answer_of(seen: Observation, item: Row, whole: Observation) -> str | None:
         whole: the observation of the same case with the whole library.
     """
     if item["index"] is None:
-        return _of_gap(seen, item, whole)
+        return _gap_label(seen, item, whole)
     named, true = item["candidates"][0]["effect"], known(seen)
     if equal(named, true) or any(equal(name, true) for name in alike(item)):
         return LIBRARY
@@ -106,7 +106,7 @@ def _at_a_fault(seen: Observation, item: Row) -> bool:
     return False
 
 
-def _of_gap(seen: Observation, item: Row, whole: Observation) -> str | None:
+def _gap_label(seen: Observation, item: Row, whole: Observation) -> str | None:
     """A gap without a cause is outside where a fault shows there, and none of its own where no fault does.
 
     A gap that the whole library explains, and the library without an effect does not, is one of that effect.

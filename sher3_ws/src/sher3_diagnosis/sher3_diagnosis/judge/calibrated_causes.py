@@ -22,12 +22,12 @@ def weighed(findings: Sequence[Finding], calibration: Calibration, own_level: bo
     every = [x for own in items for x in own]
     judgements = iter(judged_together([i for _, i in every], [_closure(*x) for x in every], calibration, own_level))
     return [
-        _kept_of(f, [_of_a_gap(f, next(judgements)) for _ in own], calibration.reach, costs)
+        _kept_of(f, [_nothing_without_gap(f, next(judgements)) for _ in own], calibration.reach, costs)
         for f, own in zip(findings, items, strict=True)
     ]
 
 
-def _of_a_gap(finding: Finding, j: Judged) -> Judged:
+def _nothing_without_gap(finding: Finding, j: Judged) -> Judged:
     """Return a cause with its odds; where no gap shows, what is none of the library's is nothing."""
     if _touches(finding, j).isdisjoint(finding.significant):
         return replace(j, outside=0.0, no_gap=j.no_gap + j.outside)

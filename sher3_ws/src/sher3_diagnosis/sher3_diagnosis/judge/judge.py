@@ -16,7 +16,7 @@ from sher3_diagnosis.judge.causes import ordered, places_of
 from sher3_diagnosis.judge.costs import DEFAULT, Costs
 from sher3_diagnosis.judge.experiments.next_experiment import next_experiment
 from sher3_diagnosis.judge.meaning import open_sizes
-from sher3_diagnosis.judge.probabilities import of_first, reproduced
+from sher3_diagnosis.judge.probabilities import first_place_odds, reproduced
 from sher3_diagnosis.judge.remainder import remainder
 from sher3_diagnosis.judge.status import answer_to_exact, status_of
 from sher3_diagnosis.localise.gaps import Gap
@@ -42,14 +42,14 @@ def judge(
     causes += [c for f in findings for c in f.causes]
     gaps = [f.significant for f in findings]
     located = _located(findings)
-    places = [exact_place(e, p) for e, p in stages] + _bets(located) if exact or any(gaps) else _unlikely(findings)
+    places = [exact_place(e, p) for e, p in stages] + _bets(located) if exact or any(gaps) else _improbable(findings)
     common: dict[str, Any] = {
         "places": places,
         "within_tolerance": [w for f in findings for w in machine.within(f)],
         "identified": [x for f in findings for x in machine.identified(f.evidence)],
-        "probabilities": of_first(places),
+        "probabilities": first_place_odds(places),
         "costs": costs.as_dict(),
-        "notes": [*notes, *_unusual(places), *(n for f in findings for n in open_sizes(f.attribution, f.causes))],
+        "notes": [*notes, *_atypical(places), *(n for f in findings for n in open_sizes(f.attribution, f.causes))],
     }
     if not any(gaps) and not exact:
         return _hidden(machine, findings, common) or Verdict(status="no_gap", **common)
@@ -76,7 +76,7 @@ Located = tuple[Finding, Channel, Where]
 
 def _hidden(machine: Machine, findings: Sequence[Finding], common: dict[str, Any]) -> Verdict | None:
     """Return the verdict on parts of which no gap is no finding, since their floor hides one; None without any."""
-    why = [(f, machine.unjudged(f)) for f in findings]
+    why = [(f, machine.unjudgeable(f)) for f in findings]
     hidden = [
         (c, w, said[c]) for f, said in why for c, w in places_of(f, {g.channel: g for g in f.gaps if g.channel in said})
     ]
@@ -100,7 +100,7 @@ def _bets(located: Sequence[Located]) -> list[Place]:
     return [place_of(f.with_all, f.judged, c, w) for f, c, w in located]
 
 
-def _unlikely(findings: Sequence[Finding]) -> list[Place]:
+def _improbable(findings: Sequence[Finding]) -> list[Place]:
     """Return the bets at gaps above their floor that are judged to be none."""
     some = [(f, j.item.channel) for f in findings for j in f.judged]
     seen = [(f, c, w) for f, x in some for c, w in places_of(f, f.with_all.significant) if c == x]
@@ -108,7 +108,7 @@ def _unlikely(findings: Sequence[Finding]) -> list[Place]:
     return _bets(list(unique.values()))
 
 
-def _unusual(places: Sequence[Place]) -> list[str]:
+def _atypical(places: Sequence[Place]) -> list[str]:
     """Say where few of the labelled causes are as unusual as what was found, so that its odds are held back."""
     return [
         f"{words(p.stage)}, {place(p.actuator)}: {share(p.typicality)} of the labelled causes are as unusual, "

@@ -18,7 +18,7 @@ import numpy as np
 
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.finding import Item
-from sher3_diagnosis.judge.evidence.scales import LEAST_SHARE, of_whole, unexplained
+from sher3_diagnosis.judge.evidence.scales import LEAST_SHARE, share_of_whole, unexplained_share
 
 LEVELS = (0.003, 0.01, 0.03, 0.1, 0.3)
 """Levels of a machine, equally likely beforehand: from the best labelled robots to three times the worst."""
@@ -44,7 +44,7 @@ def level_weights(items: Sequence[Item]) -> list[Array]:
     """Return for each cause or gap the weight of each level, as the causes of the other places tell, (k,)."""
     left: dict[Channel, list[float]] = {}
     for item in (i for i in items if i.index is not None):
-        left.setdefault(item.channel, []).append(math.log(of_whole(at_level(item.numbers, USUAL))))
+        left.setdefault(item.channel, []).append(math.log(share_of_whole(at_level(item.numbers, USUAL))))
     likely = {channel: _likely(float(np.mean(x))) for channel, x in left.items()}
     return [_normalised([x for channel, x in likely.items() if channel != item.channel]) for item in items]
 
@@ -71,7 +71,7 @@ def lawful(numbers: Mapping[str, float]) -> float:
     if "anything" not in numbers:
         return 1.0
     exponent, even = LAWFUL
-    left, law = (unexplained(numbers, of, BENT_BY) for of in ("left", "law"))
+    left, law = (unexplained_share(numbers, of, BENT_BY) for of in ("left", "law"))
     return float((even**2 / (left * law)) ** exponent)
 
 

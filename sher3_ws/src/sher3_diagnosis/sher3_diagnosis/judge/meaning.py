@@ -60,7 +60,7 @@ def without_empty(
     """
     evidence, found, empty = candidates.evidence, attribution.fit, dict[str, int]()
     sized = dict(zip(attribution.causes, causes, strict=True))
-    small = {i for i, c in sized.items() if of_no_size(found.terms[i], found.of(i), c)}
+    small = {i for i, c in sized.items() if may_be_zero(found.terms[i], found.of(i), c)}
     for i, cause in sized.items():
         worth = attribution.explained[i]
         idle = i in small and (carried or not _borne_out(evidence, attribution, i, left))
@@ -71,7 +71,7 @@ def without_empty(
         if (fewer := _plainer(candidates, attribution, i)) is not None:
             return fewer
     if carried and (nameless := small & set(empty.values())):
-        return _unnamed(evidence, attribution, sorted(nameless))
+        return _made_nuisance(evidence, attribution, sorted(nameless))
     for i in sorted(empty.values(), reverse=True):
         attribution = _simpler(candidates, attribution, i)
     return attribution
@@ -92,7 +92,7 @@ def says_nothing(evidence: Evidence, found: Fit, index: int, cause: Cause) -> bo
     return idle or simple or impossible(evidence, term, found.of(index), cause)
 
 
-def of_no_size(term: Term, coefficients: Array, cause: Cause) -> bool:
+def may_be_zero(term: Term, coefficients: Array, cause: Cause) -> bool:
     """Return whether each size of a cause may be zero.
 
     Args:
@@ -121,7 +121,7 @@ def without_open_sizes(attribution: Attribution, causes: Sequence[Cause]) -> lis
         term, coefficients = attribution.fit.terms[i], attribution.fit.of(i)
         sizes = sizes_of(term, coefficients)
         told = {n: p.model_copy(update={"means": OPEN}) for n, p in cause.parameters.items() if n in sizes and _open(p)}
-        if of_no_size(term, coefficients, cause):
+        if may_be_zero(term, coefficients, cause):
             told |= {n: _at_most(p) for n, p in cause.parameters.items() if n in sizes and _bounded(cause, [n])}
         out.append(cause.model_copy(update={"parameters": {**cause.parameters, **told}}))
     return out
@@ -217,7 +217,7 @@ def _holds_zero(p: Parameter) -> bool:
     return p.low <= 0.0 <= p.high
 
 
-def _unnamed(evidence: Evidence, attribution: Attribution, indices: Sequence[int]) -> Attribution:
+def _made_nuisance(evidence: Evidence, attribution: Attribution, indices: Sequence[int]) -> Attribution:
     """Return the attribution with some of its causes among the terms that are none."""
     rest = [i for i in attribution.causes if i not in indices]
     put = attribution.arranged(evidence, [*range(attribution.nuisance), *indices, *rest])

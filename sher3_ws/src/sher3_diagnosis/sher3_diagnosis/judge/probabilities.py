@@ -79,7 +79,7 @@ def reproduced(stage: ExactFinding, calibration: Calibration) -> float:
     return calibration.exact.probabilities(scaled_exact(stage.closure.value))[LIBRARY]
 
 
-def of_first(places: Sequence[Place]) -> dict[str, float]:
+def first_place_odds(places: Sequence[Place]) -> dict[str, float]:
     """Return answer -> probability at the first place; causes that act together are joined by `+`."""
     out: dict[str, float] = defaultdict(float)
     for answer in places[0].answers if places else ():

@@ -60,10 +60,10 @@ def regime_masks(evidence: Evidence, run: int, actuator: str) -> Families:
     middle, span = _warmth(evidence)
     if view.temperature_known and span > WARM:
         families["temperature"] = {"warm": view.warmth > middle, "cool": view.warmth <= middle}
-    return families if motion is None else {**families, **_of_axis(motion)}
+    return families if motion is None else {**families, **_axis_regimes(motion)}
 
 
-def _of_axis(motion: Motion) -> Families:
+def _axis_regimes(motion: Motion) -> Families:
     """Return the regimes that only an axis has: direction, time since a reversal, phase of the motor's turn."""
     speed, limit = motion.velocity, AT_REST * motion.top
     after = _after_reversal(speed, limit)

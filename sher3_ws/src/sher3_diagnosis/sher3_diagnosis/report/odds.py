@@ -30,7 +30,7 @@ def odds(verdict: Verdict) -> str:
     ranked = [a for a in _spoken(first, verdict.status == "attributed") if a not in one[1:]]
     if ranked[0].probability >= SURE or not any(a.causes for a in ranked):
         return ""
-    text = "; or ".join(_said(a, first, i, one) for i, a in enumerate(ranked))
+    text = "; or ".join(_answer_text(a, first, i, one) for i, a in enumerate(ranked))
     named = {x for a in (first.bet, *one) for x in _names(a)}
     beside = [sized(c) for c in verdict.causes if (c.effect, c.actuator) not in named]
     return text + (f"; besides {listed(beside)}" if beside else "")
@@ -85,7 +85,7 @@ DECADES = 100.0
 """Largest over smallest size of an interval from which a value, known to a factor of ten at best, is not told."""
 
 
-def told(parameter: Parameter) -> str:
+def parameter_text(parameter: Parameter) -> str:
     """Return a parameter in words, with its interval where it has one."""
     value = parameter.means or quantity(parameter.value, parameter.unit)
     if parameter.low is None:
@@ -107,7 +107,7 @@ def _spoken(first: Place, named: bool) -> list[Answer]:
     return [a for a in ranked if a.probability >= SPOKEN or a is ranked[0]][:MOST]
 
 
-def _said(answer: Answer, first: Place, rank: int, one: Sequence[Answer]) -> str:
+def _answer_text(answer: Answer, first: Place, rank: int, one: Sequence[Answer]) -> str:
     """Return an answer with its probability and, of the best explanation and what is one with it, size and closure."""
     together = (one or [answer]) if answer is first.bet else [answer]
     likely = share(sum(a.probability for a in together))
@@ -132,7 +132,7 @@ def answered(answer: Answer) -> str:
 def sizes(answer: Answer) -> str:
     """Return the parameters of an answer's causes with their intervals, those whose size is told."""
     return ", ".join(
-        f"{n.replace('_', ' ')} {told(p)}"
+        f"{n.replace('_', ' ')} {parameter_text(p)}"
         for c in answer.causes
         for n, p in shown_parameters(c).items()
         if significant(p)

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 from typing import Any
 
-from sher3_diagnosis.report.odds import name_of, odds, significant, sized, told
+from sher3_diagnosis.report.odds import name_of, odds, parameter_text, significant, sized
 from sher3_diagnosis.report.odds import shown_parameters as shown_parameters
 from sher3_diagnosis.reporter import Reporter, Table
 from sher3_diagnosis.thresholds import REMAINDER, WITHIN
@@ -76,7 +76,7 @@ def five_lines(
         folder: where its verdict is written.
         options: of the diagnosis; all three as in `command`, so that the next line can be typed as it stands.
     """
-    causes = ["; ".join(cause_text(c) for c in verdict.causes) or _unknown(verdict)]
+    causes = ["; ".join(cause_text(c) for c in verdict.causes) or _unexplained_text(verdict)]
     return [
         ("verdict", f"{verdict.status}: {headline(verdict, rests)}"),
         ("where", _where(verdict)),
@@ -91,7 +91,7 @@ def cause_text(cause: Cause) -> str:
     text = words(name_of(cause))
     known = list(shown_parameters(cause).items())
     for name, p in [(n, p) for n, p in known if significant(p)] or known[:1]:
-        text += f", {name.replace('_', ' ')} {told(p)}"
+        text += f", {name.replace('_', ' ')} {parameter_text(p)}"
     return text + (f" [or {', '.join(words(r).lower() for r in cause.rivals)}]" if cause.rivals else "")
 
 
@@ -163,7 +163,7 @@ def _where(verdict: Verdict) -> str:
     return text + (f" (and {more} more place{'s' * (more > 1)})" if more else "")
 
 
-def _unknown(verdict: Verdict) -> str:
+def _unexplained_text(verdict: Verdict) -> str:
     if verdict.unexplained is None:
         return "none needed"
     alike = [
@@ -219,8 +219,9 @@ def command(
 
 def _next(verdict: Verdict, reporter: Reporter[Any], case: str, folder: str, options: str) -> str:
     e = verdict.next_experiment
-    if verdict.untold:
-        return f"no experiment that was rehearsed tells {' / '.join(words(i).lower() for i in verdict.untold)} apart"
+    if verdict.unseparated_rivals:
+        rivals = " / ".join(words(i).lower() for i in verdict.unseparated_rivals)
+        return f"no experiment that was rehearsed tells {rivals} apart"
     if e is not None:
         added = f", with {e.added}," if e.added else ""
         expected = "" if e.expected_odds is None else f"; expected odds {share(e.expected_odds)}"

@@ -54,7 +54,7 @@ class PlatformGeometryError(Page):
         A ball displaced by d changes what its link spans by u . d, u the link's direction.
         """
         if shape["ball"] == self.EVERY:
-            legs = [self._of_leg(view, row, BOTH_UNLIKE) for row in range(len(SLIDERS))]
+            legs = [self._leg_columns(view, row, BOTH_UNLIKE) for row in range(len(SLIDERS))]
             return Signature(view.at_tip(-np.concatenate(legs, axis=2)))
         azimuth = view.robot.delta.leg_azimuth
         span = view.links[:, :3]
@@ -62,10 +62,10 @@ class PlatformGeometryError(Page):
             outward = np.repeat([[np.cos(a), np.sin(a), 0.0] for a in azimuth], 2, axis=0)
             change = np.einsum("gij,gkj,jk->gi", view.link_changes, span, outward)[:, :, None]
         else:
-            change = self._of_leg(view, view.row(site), shape["ball"])
+            change = self._leg_columns(view, view.row(site), shape["ball"])
         return Signature(view.at_tip(-change))
 
-    def _of_leg(self, view: RobotView, row: int, ball: float) -> Array:
+    def _leg_columns(self, view: RobotView, row: int, ball: float) -> Array:
         """Return the change of the pose (g, 6, 2 or 3) per metre of x, y of a leg's balls, and of their difference."""
         first = 2 * row
         links = {1: (first,), 2: (first + 1,)}.get(int(ball), (first, first + 1))

@@ -46,7 +46,7 @@ class GravityLoad(Page):
         gravity = view.path.gravity[:, view.row(site)]
         return Signature({Channel(self.stage, site): column(np.ones_like(gravity) if shape["constant"] else gravity)})
 
-    def of_model(self, shape: Shape) -> bool:
+    def scales_model(self, shape: Shape) -> bool:
         """Return whether it is a share of the modelled weight."""
         return not shape["constant"]
 
@@ -144,13 +144,13 @@ class ServoSag(GravityOnAxis):
 
     def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
         """Return the shapes of an axis that the rests of the servo tell."""
-        return [shape for shape in super().shapes(views, site) if self.told(views, site, shape)]
+        return [shape for shape in super().shapes(views, site) if self.sag_observable(views, site, shape)]
 
     def bends(self, views: Sequence[AxisView], site: str, shape: Shape) -> list[Shape]:
         """Return a weight at an arm and a constant force, where rests tell them."""
-        return [bent for bent in super().bends(views, site, shape) if self.told(views, site, bent)]
+        return [bent for bent in super().bends(views, site, shape) if self.sag_observable(views, site, bent)]
 
-    def told(self, views: Sequence[AxisView], site: str, shape: Shape) -> bool:
+    def sag_observable(self, views: Sequence[AxisView], site: str, shape: Shape) -> bool:
         """Return whether the places at which a servo rests tell its sag, where it rests most of the time.
 
         A weight at an arm does nothing at 0 and at 180 degrees: the way between them is no witness of it.

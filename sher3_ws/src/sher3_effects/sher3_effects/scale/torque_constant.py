@@ -40,7 +40,7 @@ class TorqueConstant(Page):
         needed = view.inertial[:, row] - view.axis(site).of_step * view.acceleration[:, row]
         return Signature({Channel(self.stage, site): column(-needed)})
 
-    def of_model(self, shape: Shape) -> bool:
+    def scales_model(self, shape: Shape) -> bool:
         """Return that it is a share of all forces that the model needs."""
         return True
 

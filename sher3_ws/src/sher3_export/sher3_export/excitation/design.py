@@ -72,7 +72,7 @@ def designed(machine: Any, runs: Sequence[Any], seed: int = 0) -> Excitation:
     names, slides = [j.name for j in described], [j.motion == "linear" for j in described]
     parts = [p for p in machine.gather(runs) if not is_law(p)]
     box = box_of([[v.run for v in p.records] for p in parts], names)
-    laws: Laws = of_arm(machine) if isinstance(machine, Manipulator) else of_axes
+    laws: Laws = arm_laws(machine) if isinstance(machine, Manipulator) else axis_laws
     rng, t = np.random.default_rng(seed), np.linspace(0.0, SECONDS, 400)
     tried = [within(drawn(rng, len(names), HARMONICS, SECONDS), box, t) for _ in range(TRIED)]
     moments = np.linspace(0.0, SECONDS, SAMPLES, endpoint=False)
@@ -101,7 +101,7 @@ def box_of(runs: Sequence[Sequence[Any]], names: Sequence[str]) -> Box:
     return Box(margin - low, high - margin, INSIDE * speed, INSIDE * acceleration)
 
 
-def of_axes(q: Array, v: Array, a: Array) -> Array:
+def axis_laws(q: Array, v: Array, a: Array) -> Array:
     """Return (n k, 5 k) of motions (n, k): mass, viscous and dry friction, spring and a constant of each axis."""
     n, k = q.shape
     out = np.zeros((n, k, 5 * k))
@@ -111,7 +111,7 @@ def of_axes(q: Array, v: Array, a: Array) -> Array:
     return out.reshape(n * k, -1)
 
 
-def of_arm(arm: Manipulator) -> Laws:
+def arm_laws(arm: Manipulator) -> Laws:
     """Return the laws of an arm: its inertial parameters; viscous and dry friction and a constant force of joints."""
 
     def laws(q: Array, v: Array, a: Array) -> Array:

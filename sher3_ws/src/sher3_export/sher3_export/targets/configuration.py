@@ -98,7 +98,8 @@ class Configuration(Target):
     def text(self, remarks: Sequence[str]) -> str:
         """Return the file."""
         self.finish()
-        lines = [*self.said(remarks), "RANGES: 95 % intervals of the fields, to draw from in domain randomisation."]
+        lines = self.remarks_on(remarks)
+        lines += ["RANGES: 95 % intervals of the fields, to draw from in domain randomisation."]
         lines += ["NOISE: standard deviation of readings, the `std` of a GaussianNoiseCfg of observations."]
         used = sorted({self._class(group) for group in self.groups.values()} or {self.plain})
         groups = "".join(f"    {joint!r}: {self._group(joint, group)},\n" for joint, group in self.groups.items())
@@ -114,7 +115,7 @@ class Configuration(Target):
         """Return what the file has beside actuators and ranges; default nothing."""
         return ""
 
-    def said(self, remarks: Sequence[str]) -> list[str]:
+    def remarks_on(self, remarks: Sequence[str]) -> list[str]:
         """Return the remarks, whose fields these are and what their values mean."""
         totals = ALONE if self.nominal is None else "Values are totals, with the model's."
         return [*remarks, f"Fields of {self.version}. Delays in steps of {self.step} s. {totals}"]

@@ -81,5 +81,5 @@ class Isaac(IsaacLab):
             for joint, group in self.groups.items()
         }
         ranges = {joint: {n: list(x) for n, x in found.items()} for joint, found in self.ranges.items() if found}
-        head = "".join(f"# {line}\n" for line in self.said(remarks))
+        head = "".join(f"# {line}\n" for line in self.remarks_on(remarks))
         return head + dump_yaml({"actuators": groups, "ranges": ranges, "noise": self.noise})

@@ -59,7 +59,7 @@ class WrongLinks:
 
     def want(self, change: Change) -> str:
         """Take a change; return why it cannot be written, or nothing."""
-        if not self._wanted and (reason := self._unread()):
+        if not self._wanted and (reason := self._unreadable_inertias()):
             return reason
         self._wanted.setdefault(change.joint, np.zeros(PARAMETERS))[INERTIAL.index(change.constant)] += change.value
         return ""
@@ -85,7 +85,7 @@ class WrongLinks:
     def _tree(self) -> Tree:
         return bodies_of(tostring(self.bare(self.root), encoding="unicode"), "the model").tree
 
-    def _unread(self) -> str:
+    def _unreadable_inertias(self) -> str:
         compiler = self.root.find("compiler")
         if compiler is not None and compiler.get("inertiafromgeom") == "true":
             return "the compiler of the model takes all inertias from its geoms: take inertiafromgeom out"

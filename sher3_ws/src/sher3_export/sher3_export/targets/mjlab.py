@@ -64,10 +64,10 @@ class Mjlab(Configuration):
         super().__init__(model)
         self.of_joints: dict[str, dict[str, float]] = {}
 
-    def said(self, remarks: Sequence[str]) -> list[str]:
+    def remarks_on(self, remarks: Sequence[str]) -> list[str]:
         """Say also where a group stands in place of an actuator of the MJCF."""
         twice = any(self._class(group) == self.servo for group in self.groups.values())
-        return [*super().said(remarks), *([TWICE] if twice else [])]
+        return [*super().remarks_on(remarks), *([TWICE] if twice else [])]
 
     def finish(self) -> None:
         """Take what is of the joints out of their groups; state both gains of a servo, since its class needs them."""

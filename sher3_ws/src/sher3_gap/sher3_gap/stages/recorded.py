@@ -21,10 +21,10 @@ def recorded_at(view: RobotView, channel: Channel) -> Quantities:
     The own ones of an actuator have plain names, those of others the actuator's before a point. The reported effort is
     none where it is the output: what is left of it explains itself.
     """
-    return _of_axis(view, channel) if channel.actuator in ACTUATORS else _of_tip(view)
+    return _axis_quantities(view, channel) if channel.actuator in ACTUATORS else _tip_quantities(view)
 
 
-def _of_axis(view: RobotView, channel: Channel) -> dict[str, Quantity]:
+def _axis_quantities(view: RobotView, channel: Channel) -> dict[str, Quantity]:
     place = channel.actuator
     out = motion_of(view.run, place, "", True)
     i, run = ACTUATORS.index(place), view.run
@@ -77,7 +77,7 @@ def shared_by_all(run: RunSignals) -> dict[str, Quantity]:
     return out
 
 
-def _of_tip(view: RobotView) -> dict[str, Quantity]:
+def _tip_quantities(view: RobotView) -> dict[str, Quantity]:
     """Return postures, loads and motion of the tip; directions of the tool are those of its axes in the base frame."""
     run, path = view.run, view.path
     out = shared_by_all(run)

@@ -16,8 +16,8 @@ from sher3_gap_cli.options import (
     Trust,
     VerdictFile,
     case_argument,
-    of_the_robot,
     reported,
+    require_sher_case,
     shown,
 )
 
@@ -49,7 +49,7 @@ def apply(
 
     with reported(as_json):
         add_library(own or [], trust)
-        runs, model = load_case(of_the_robot(case, EXPORT), robot) if case else ([], load_robot(robot))
+        runs, model = load_case(require_sher_case(case, EXPORT), robot) if case else ([], load_robot(robot))
         effects = apply_verdict(verdict, output, model, bet)
         odds = bet_lines(verdict, bet)
         stages = compare_case(runs, model, effects) if runs else []
@@ -71,8 +71,8 @@ def compare(
     from sher3_gap.simulate.apply import compare_cases
 
     with reported(as_json):
-        runs, model = load_case(of_the_robot(case, TAGS), robot)
-        stages = compare_cases(runs, model, load_case(of_the_robot(other, TAGS), robot)[0])
+        runs, model = load_case(require_sher_case(case, TAGS), robot)
+        stages = compare_cases(runs, model, load_case(require_sher_case(other, TAGS), robot)[0])
         shown(as_json, {"stages": stages_data(stages)}, stages_text(stages))
 
 

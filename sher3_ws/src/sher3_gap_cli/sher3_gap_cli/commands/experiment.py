@@ -9,7 +9,15 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from sher3_common.commands.options import Json
 
-from sher3_gap_cli.options import Bet, RobotFile, VerdictFile, case_argument, check_writable, of_the_robot, reported
+from sher3_gap_cli.options import (
+    Bet,
+    RobotFile,
+    VerdictFile,
+    case_argument,
+    check_writable,
+    reported,
+    require_sher_case,
+)
 
 if TYPE_CHECKING:
     from sher3_gap.experiments.design import Experiment
@@ -105,7 +113,7 @@ def design_command(verdict: Path, case: Path | None, output: Path, robot: Path |
     from sher3_gap_cli.printing import steps
 
     found = read_verdict(verdict, RECORD, bet)
-    runs, model = load_case(of_the_robot(case, RECORD), robot) if case else ([], load_robot(robot))
+    runs, model = load_case(require_sher_case(case, RECORD), robot) if case else ([], load_robot(robot))
     with steps() as say:
         made = design_experiment(found, model, say, runs=runs)
     data = experiment_data(made)
@@ -122,7 +130,7 @@ def realised_command(verdict: Path, experiment: Path, ran: Path, robot: Path | N
 
     asked = read_verdict(verdict, DIAGNOSE, bet)
     about = about_excitation(experiment)
-    runs, model = load_case(of_the_robot(ran, DIAGNOSE), robot)
+    runs, model = load_case(require_sher_case(ran, DIAGNOSE), robot)
     found = realised(asked, model, runs)
     data = {
         "predicted_separation": about.get("predicted_separation"),

@@ -40,7 +40,7 @@ def judged(model: str, joints: tuple[str, ...], arrays: tuple[Array | None, ...]
 
     time, command, position, effort = arrays
     try:
-        control = None if command is None else of_actuators(source_of(model).bodies, joints, command)
+        control = None if command is None else actuator_commands(source_of(model).bodies, joints, command)
         found = diagnose(model, time, control, position, effort, joints=joints)
     except Sher3Error as error:
         return [Status("gap", STALE, str(error))]
@@ -56,7 +56,7 @@ def sizes(cause: Cause) -> dict[str, str]:
     return {name: f"{p.value:.6g} {p.unit}" for name, p in cause.parameters.items()}
 
 
-def of_actuators(bodies: Bodies, joints: Sequence[str], command: Array) -> Array | None:
+def actuator_commands(bodies: Bodies, joints: Sequence[str], command: Array) -> Array | None:
     """Return a command of joints (n, k) in the order of the model's actuators (n, nu); None where it has none."""
     if bodies.mujoco is None:
         return None

@@ -93,7 +93,7 @@ def name_of(path: Path) -> str:
     return re.sub(r"\W+", "_", path.stem)
 
 
-def unused(tables: Tables, used: Collection[str]) -> list[str]:
+def unused_columns(tables: Tables, used: Collection[str]) -> list[str]:
     """Return the guess that says which columns are not used; [] where all are."""
     left = [n for n in tables if n not in used]
     return [f"not used: {', '.join(left)}"] if left else []

@@ -14,9 +14,9 @@ from sher3_machines.drafting.unnamed import (
     clock_among,
     given,
     named_by_motion,
+    place_text,
     places_of,
     renamed,
-    said,
 )
 from sher3_machines.errors import MachineError
 from sher3_machines.intake.kind import Draft
@@ -56,7 +56,7 @@ def draft_of(path: Path, rate: float | None = None, model: Path | None = None, n
         if not found and (clock := clock_among(tables)):
             raise MachineError(
                 f"{path.name}: no column looks like a position",
-                value=", ".join(map(said, places_of(tables))),
+                value=", ".join(map(place_text, places_of(tables))),
                 limit=f"one that follows another one, or is the integral of one; {clock} is the time",
                 remedy="name the columns in order, an empty one for what is no signal: --names t,q,,u",
             ) from refused

@@ -119,11 +119,11 @@ def swings_to_rest(x: Array) -> bool:
 def grows(x: Array) -> bool:
     """Return whether a column (n,) runs forward but for a few steps."""
     known = x[np.isfinite(x)]
-    steps, once = np.diff(known), np.diff(_unbroken(known))
+    steps, once = np.diff(known), np.diff(_longest_part(known))
     return len(once) > 1 and float(np.mean(steps >= 0.0)) > GROWING and bool(np.median(once.cumsum()) > 0.0)
 
 
-def _unbroken(x: Array) -> Array:
+def _longest_part(x: Array) -> Array:
     """Return the longest part of a column (n,) in which it does not jump back, of a log that was begun again.
 
     What jumps back more often is an angle that turns.
@@ -142,7 +142,7 @@ def evenly(x: Array) -> bool:
 
     Steps that are read to a coarse tick are even where they are a tick off.
     """
-    steps = np.diff(_unbroken(x[np.isfinite(x)]))
+    steps = np.diff(_longest_part(x[np.isfinite(x)]))
     if np.std(steps) < EVEN * np.mean(steps):
         return True
     if not (steps > 0.0).all():

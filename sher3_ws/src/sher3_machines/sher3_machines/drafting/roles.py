@@ -80,7 +80,7 @@ def placed(tables: Tables, clock: str | None, guesses: list[str], held: bool = F
         guesses: so far.
         held: whether a place that never changes counts: a joint that is held still carries the others.
     """
-    living = _living(counted_alike(_asked(_named(tables, clock), tables)), tables, guesses, held)
+    living = _living(counted_alike(_with_targets(_named(tables, clock), tables)), tables, guesses, held)
     return with_loads(with_speeds(with_drive(with_output(living, tables))))
 
 
@@ -157,7 +157,7 @@ def _beside(found: Mapping[Place, tuple[str, str]], tables: Tables) -> dict[Plac
     return {} if driven else out
 
 
-def _asked(found: Mapping[Place, tuple[str, str]], tables: Tables) -> dict[Place, tuple[str, str]]:
+def _with_targets(found: Mapping[Place, tuple[str, str]], tables: Tables) -> dict[Place, tuple[str, str]]:
     """Return the signals with what may be an effort, or a place, as the place that its axis lacks where it is near."""
     signals, out = {what: values_of(p, tables) for p, what in found.items()}, dict(found)
     efforts = [(p, a) for p, (signal, a) in found.items() if signal == "effort" and named(p[0]).unit not in FORCES]
@@ -297,7 +297,7 @@ def together(placed: Mapping[Place, tuple[str, str]]) -> tuple[dict[str, dict[st
     for place, (signal, axis) in sorted(placed.items(), key=lambda item: _rank(item[0], "")):
         if signal == "position":
             groups.setdefault(axis, {}).setdefault(signal, place)
-    joints = of_topics(groups)
+    joints = join_topics(groups)
     tables = {table_of(signals["position"][0]) for signals in joints.values()}
     table = tables.pop() if len(tables) == 1 else ""
     left = [s["position"][0] for axis, s in groups.items() if axis not in joints]
@@ -314,7 +314,7 @@ def together(placed: Mapping[Place, tuple[str, str]]) -> tuple[dict[str, dict[st
     return groups, list(dict.fromkeys(left))
 
 
-def of_topics(groups: dict[str, dict[str, Place]]) -> dict[str, dict[str, Place]]:
+def join_topics(groups: dict[str, dict[str, Place]]) -> dict[str, dict[str, Place]]:
     """Return the axes of topics with a table for each of several joints, `joint_states/elbow/position`; else all."""
     places = {axis: signals["position"][0] for axis, signals in groups.items()}
     topics = {axis: (table_of(table_of(place)), bare(place)) for axis, place in places.items()}

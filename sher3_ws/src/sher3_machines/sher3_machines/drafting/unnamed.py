@@ -73,7 +73,7 @@ def given(names: Sequence[str], tables: Tables) -> dict[Place, str]:
         raise MachineError(
             "names do not fit the columns",
             value=", ".join(names),
-            limit=f"{len(places)} different ones: {', '.join(said(place) for place in places)}",
+            limit=f"{len(places)} different ones: {', '.join(place_text(place) for place in places)}",
             remedy="give one name for each column, as in `--names t,q,i`; an empty one leaves its column out",
         )
     return {place: _in_unit(name, place[0]) for place, name in zip(places, names, strict=True) if name}
@@ -97,14 +97,14 @@ def named_by_motion(tables: Tables, rate: float | None, guesses: list[str]) -> d
     of_table: dict[str, Tables] = {}
     for name, x in tables.items():
         of_table.setdefault(table_of(name), {})[name] = x
-    told = {table: _told(own, rate, guesses) for table, own in of_table.items()}
+    told = {table: _name_columns(own, rate, guesses) for table, own in of_table.items()}
     return {p: f"{table}/{name}" if table else name for table, own in told.items() for p, name in own.items()}
 
 
 def clock_among(tables: Tables) -> str:
     """Return the column without a name that is the time, as `data[0]`; empty where none is."""
     clock, _, columns = _timed(tables, None)
-    return said(clock) if clock and not _titled([clock, *columns]) else ""
+    return place_text(clock) if clock and not _titled([clock, *columns]) else ""
 
 
 def _titled(places: Iterable[Place]) -> bool:
@@ -112,7 +112,7 @@ def _titled(places: Iterable[Place]) -> bool:
     return any(index is None and not WITHOUT.fullmatch(bare(name)) for name, index in places)
 
 
-def _told(tables: Tables, rate: float | None, guesses: list[str]) -> dict[Place, str]:
+def _name_columns(tables: Tables, rate: float | None, guesses: list[str]) -> dict[Place, str]:
     """Return names for the columns of one table that have none."""
     clock, t, columns = _timed(tables, rate)
     moving = {p: x for p, x in columns.items() if np.isfinite(x).all() and float(np.ptp(x)) > 0.0}
@@ -135,19 +135,21 @@ def _told(tables: Tables, rate: float | None, guesses: list[str]) -> dict[Place,
     if found or followers:
         (x, other), role = (found or followers)[0], VELOCITY if found else REFERENCE
         why = "its speed" if found else "what it follows"
-        guesses.append(f"{said(x)} is a position, because {said(other)} is {why}; nobody named them")
+        guesses.append(f"{place_text(x)} is a position, because {place_text(other)} is {why}; nobody named them")
         named = {x: POSITION, other: role} | ({asked[0]: REFERENCE} if len(asked) == 1 else {})
     elif len(moving) == 1 and not titled and swings_to_rest(*moving.values()):
         (x,) = moving
-        guesses.append(f"{said(x)} is a position, because it swings to rest and nothing else moves; nobody named it")
+        guesses.append(
+            f"{place_text(x)} is a position, because it swings to rest and nothing else moves; nobody named it"
+        )
         named = {x: POSITION}
     else:
         return {}
     left = [p for p in moving if p not in named]
     if found and len(left) == 1 and _drives(t, moving[x], moving[other], moving[left[0]]):
-        guesses.append(f"{said(left[0])} is the effort, because it balances the motion; nobody named it")
+        guesses.append(f"{place_text(left[0])} is the effort, because it balances the motion; nobody named it")
         named[left.pop()] = EFFORT
-    rest = ", ".join(map(said, left))
+    rest = ", ".join(map(place_text, left))
     guesses.extend([f"not told by the motion: {rest}; name them: --names t,q,..."] if rest else [])
     told = {(name, None): name for name in tables if titled and (name, None) not in columns}
     return {**({clock: "time"} if clock else {}), **named, **told}
@@ -217,7 +219,9 @@ def named_by_blocks(tables: Tables, rate: float | None, joints: int, guesses: li
     kinds |= dict(zip(left, (EFFORT, ACCELERATION), strict=False)) if len(left) < 3 else {}
     for i, kind in kinds.items():
         why = "it is what is left" if kind == EFFORT else "the motion says so"
-        guesses.append(f"{said(blocks[i][0])} to {said(blocks[i][-1])} are the {kind} of {joints} joints: {why}")
+        guesses.append(
+            f"{place_text(blocks[i][0])} to {place_text(blocks[i][-1])} are the {kind} of {joints} joints: {why}"
+        )
     named = {place: f"{kind}_{n}" for i, kind in kinds.items() for n, place in enumerate(blocks[i], 1)}
     return {**({clock: "time"} if clock and named else {}), **named}
 
@@ -303,6 +307,6 @@ def as_recorded(description: Any, names: Mapping[Place, str]) -> Any:
     return out
 
 
-def said(place: Place) -> str:
+def place_text(place: Place) -> str:
     """Return a column, or an entry of one, as people write it."""
     return place[0] if place[1] is None else f"{place[0]}[{place[1]}]"

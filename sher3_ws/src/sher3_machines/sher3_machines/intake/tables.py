@@ -189,7 +189,7 @@ def with_whole_clocks(tables: Tables) -> Tables:
     return found
 
 
-def of_curves(tables: Tables) -> Tables:
+def join_curves(tables: Tables) -> Tables:
     """Return columns that were saved as curves, `NAME_x` of stamps that grow and `NAME_y`, as channels with stamps."""
     curves = [DRAWN.fullmatch(name) for name in tables]
     names = {m["channel"] for m in curves if m}
@@ -219,7 +219,7 @@ def is_rosbag2(path: Path) -> bool:
 
 def _read(path: Path, reader: Callable[[Path], Tables]) -> Tables:
     try:
-        return of_curves(with_whole_clocks(as_long(upright(reader(path)))))
+        return join_curves(with_whole_clocks(as_long(upright(reader(path)))))
     except FileError as error:
         raise MachineError(
             f"{path}: {error.reason}", value=error.value, limit=error.limit, remedy=error.remedy or "check the file"

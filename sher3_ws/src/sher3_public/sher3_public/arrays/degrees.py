@@ -97,7 +97,7 @@ def left(
         elif run.control is None or column is None or drive is None:
             continue
         else:
-            asked = drive.asked(run.control[:, column]) * (sizes[i] if drive.servo else 1.0)
+            asked = drive.target(run.control[:, column]) * (sizes[i] if drive.servo else 1.0)
             effort = drive.law(asked, q[:, i], v[:, i])
             added, own = drives[name].of_law.inertia if drive.servo else 0.0, []
         effort = savitzky_golay(effort, WINDOW, 3)[inner]

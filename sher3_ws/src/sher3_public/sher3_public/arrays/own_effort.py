@@ -76,7 +76,7 @@ def from_law(time: Array, q: Array, drive: Drive, control: Array, effort: Array)
     period, limit = float(np.median(np.diff(time))), np.inf if drive.limit is None else drive.limit
     window = min(max(WINDOW, 2 * round(0.5 * SMOOTH / period) + 1), 2 * ((len(q) - 1) // 2) + 1)
     v, a = (savitzky_golay(q, window, 3, k, period) for k in (1, 2))
-    law = drive.law(drive.asked(control), q, v)
+    law = drive.law(drive.target(control), q, v)
     left = savitzky_golay(effort - np.clip(law, -limit, limit), window, 3)
     usual = np.abs(left) <= np.quantile(np.abs(left), USUAL)
     left, a = left[usual], a[usual]

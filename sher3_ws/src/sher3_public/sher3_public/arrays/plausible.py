@@ -49,7 +49,7 @@ def control_of(name: str, control: Array, position: Array, drive: Drive) -> None
     if not known.any():
         remedy = "give what its actuator was told, or leave control out and give efforts"
         raise InputError(f"{name}: its control has no number", value="NaN or infinite alone", remedy=remedy)
-    asked, q = drive.asked(control[known]), position[known]
+    asked, q = drive.target(control[known]), position[known]
     wide, own = float(np.std(asked)), float(np.std(q))
     if not wide or not own:
         return
@@ -155,7 +155,7 @@ def _other_follows(
     for name, column in zip(names, columns, strict=True):
         drive = drives[name].drive if name in drives else None
         if run.control is not None and column is not None and drive is not None and drive.servo:
-            asked[name] = drive.asked(run.control[:, column])
+            asked[name] = drive.target(run.control[:, column])
     for name in asked:
         q = run.position[:, names.index(name)]
         alike = {other: _alike(x, q) for other, x in asked.items()}

@@ -56,9 +56,9 @@ class Comparison:
     def __str__(self) -> str:
         each = ", ".join(f"{x:.3g}" for x in self.apart)
         apart = f"{self.names[1]} against {self.names[0]}: positions differ by {each} (rad or m, rms)"
-        return f"{apart}\ncause: {self.cause or self._unknown()}"
+        return f"{apart}\ncause: {self.cause or self._answer_text()}"
 
-    def _unknown(self) -> str:
+    def _answer_text(self) -> str:
         if not self.apart.any():
             return "none, they are the same"
         return "none found" if self.answer is None else self.answer.headline

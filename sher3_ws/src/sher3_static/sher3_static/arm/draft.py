@@ -13,7 +13,7 @@ from typing import Any
 from xml.etree import ElementTree
 
 import numpy as np
-from sher3_machines.drafting.draft import name_of, unused, written
+from sher3_machines.drafting.draft import name_of, unused_columns, written
 from sher3_machines.drafting.guesses import position_unit
 from sher3_machines.drafting.names import bare_and_unit, tells_time
 from sher3_machines.intake.kind import Draft
@@ -66,7 +66,7 @@ def draft_postures(path: Path, tables: Tables, model: Path) -> Draft | None:
     ]
     data["positions"] = [_column(name, columns, True) for name in point]
     data |= {"noise": NOISE, "urdf": str(model.resolve()), "base_link": chain[0][1], "tip_link": chain[-1][2]}
-    return written(data, [*guesses, *unused(tables, (*own, *point))])
+    return written(data, [*guesses, *unused_columns(tables, (*own, *point))])
 
 
 def points(columns: Mapping[str, Any]) -> dict[tuple[str, str], list[str]]:

@@ -124,7 +124,7 @@ class ArmKind(TableKind[ArmDescription]):
         )
         return [table]
 
-    def said(self, finding: Finding[TableEvidence]) -> list[str]:
+    def notes_on(self, finding: Finding[TableEvidence]) -> list[str]:
         """Say how far held-out postures are off, layer by layer, and where what is left lies."""
         evidence, steps = finding.evidence, finding.attribution.steps
         folds = f"{evidence.table.view.rows} postures, one in {FOLDS} held out in turn"

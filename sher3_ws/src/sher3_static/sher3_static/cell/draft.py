@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 from sher3_diagnosis.channel import Array
-from sher3_machines.drafting.draft import name_of, unused, written
+from sher3_machines.drafting.draft import name_of, unused_columns, written
 from sher3_machines.drafting.names import bare_and_unit, counts_samples, named, tells_time, vocabulary, words_of
 from sher3_machines.intake.fields import Column
 from sher3_machines.intake.kind import Draft
@@ -72,7 +72,7 @@ def draft_cell(path: Path, tables: Tables) -> Draft | None:
     guesses.append(f"loads are {load!r}, in {applied.unit}, because {why}")
     x, y = _both(as_weight(applied) * applied.scale * tables[load], tables[read])
     reading = {"column": read, **_scaled(read, x, y, guesses)}
-    guesses += unused(tables, found)
+    guesses += unused_columns(tables, found)
     measures = "torque" if str(applied.unit).endswith("N*m") else "force"
     data: dict[str, Any] = {"kind": "load_cell", "name": name_of(path), "measures": measures}
     data["applied"] = {"column": load, "unit": applied.unit}

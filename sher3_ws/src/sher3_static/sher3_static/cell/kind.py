@@ -68,7 +68,7 @@ class CellKind(TableKind[CellDescription]):
         )
         return [table]
 
-    def said(self, finding: Finding[TableEvidence]) -> list[str]:
+    def notes_on(self, finding: Finding[TableEvidence]) -> list[str]:
         """Return what data sheets of cells state: errors in shares of the largest force."""
         table = finding.evidence.table
         whole = float(np.abs(table.view.applied).max())  # type: ignore[attr-defined]

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 from sher3_diagnosis.channel import Array
-from sher3_machines.drafting.draft import ROTARY_UNITS, name_of, unused, written
+from sher3_machines.drafting.draft import ROTARY_UNITS, name_of, unused_columns, written
 from sher3_machines.drafting.guesses import WIDEST_ROOM, reach
 from sher3_machines.drafting.names import (
     ASKED,
@@ -93,34 +93,36 @@ def draft_test(path: Path, tables: Tables) -> Draft | None:
         used.add(warm)
         guesses.append(f"temperature is {warm!r}, because of its name")
     data = {"kind": "positioning", "name": name_of(path), "axes": [axis]}
-    return written(data, [*guesses, *unused(tables, used)])
+    return written(data, [*guesses, *unused_columns(tables, used)])
 
 
 def one(flat: Tables, words: Collection[str], used: Collection[str] = ()) -> str | None:
     """Return the first column with one of some words in its name that is not used."""
-    return next((n for n in flat if n not in used and said(n) & set(words)), None)
+    return next((n for n in flat if n not in used and words_in(n) & set(words)), None)
 
 
-def said(column: str) -> set[str]:
+def words_in(column: str) -> set[str]:
     """Return the words of a column's name without its unit."""
     return set(words_of(bare_and_unit(bare(column))[0]))
 
 
 def _columns(flat: Tables) -> tuple[str, list[str]] | None:
     """Return the target, and the reading, the deviation or the passes; None where the table has no such."""
-    targets = [n for n in flat if said(n) & TARGET and not said(n) & (DEVIATION | MEASURED | VELOCITY)]
+    targets = [n for n in flat if words_in(n) & TARGET and not words_in(n) & (DEVIATION | MEASURED | VELOCITY)]
     for target in targets:
         x = flat[target]
         others = {
-            n: y for n, y in flat.items() if n != target and len(y) == len(x) and not said(n) & IGNORED - DEVIATION
+            n: y for n, y in flat.items() if n != target and len(y) == len(x) and not words_in(n) & IGNORED - DEVIATION
         }
-        passes = [n for n, y in others.items() if said(n) & PASS and _small(y, x)]
+        passes = [n for n, y in others.items() if words_in(n) & PASS and _small(y, x)]
         if len(passes) > 1 and len(passes) * len(x) >= FEWEST:
             return target, in_turn(passes)
         if len(x) < FEWEST or len(x) < REPEATED * len(np.unique(x)):
             continue
-        off = [n for n, y in others.items() if said(n) & DEVIATION and _small(y, x)]
-        read = [n for n, y in others.items() if said(n) & (READING | POSITION) and np.ptp(y) > 0.0 and _follows(y, x)]
+        off = [n for n, y in others.items() if words_in(n) & DEVIATION and _small(y, x)]
+        read = [
+            n for n, y in others.items() if words_in(n) & (READING | POSITION) and np.ptp(y) > 0.0 and _follows(y, x)
+        ]
         if read or off:
             return target, (read or off)[:1]
     return None
@@ -128,7 +130,7 @@ def _columns(flat: Tables) -> tuple[str, list[str]] | None:
 
 def in_turn(passes: list[str]) -> list[str]:
     """Return passes in the order of a protocol, from below and from above in turn, where their names say both."""
-    sides = [int(bool(said(n) & DOWN)) for n in passes]
+    sides = [int(bool(words_in(n) & DOWN)) for n in passes]
     numbers = [re.findall(r"\d+", bare_and_unit(n)[0]) for n in passes]
     if len(set(sides)) == 1 or not all(numbers):
         return passes

@@ -41,7 +41,7 @@ class PositioningKind(TableKind[PositioningDescription]):
         circles = [circle_table(test, [within(run, f"planes/{test.name}/") for run in runs]) for test in known.planes]
         return [*axes, *circles]
 
-    def said(self, finding: Finding[TableEvidence]) -> list[str]:
+    def notes_on(self, finding: Finding[TableEvidence]) -> list[str]:
         """Return the contribution ranking."""
         return ranking(finding.evidence.table, finding.attribution)
 

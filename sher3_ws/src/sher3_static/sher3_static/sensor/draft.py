@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from sher3_machines.drafting.draft import name_of, unused, written
+from sher3_machines.drafting.draft import name_of, unused_columns, written
 from sher3_machines.drafting.names import ASKED, bare_and_unit, tells_time, words_of
 from sher3_machines.intake.kind import Draft
 from sher3_machines.intake.spelling import bare
@@ -59,7 +59,7 @@ def draft_sensor(path: Path, tables: Tables) -> Draft | None:
         "what hangs on it is found from the readings, and a wrong scale of the sensor is then not told: state "
         "`load: {mass: kg, centre: [m, m, m]}`"
     )
-    return written(data, [*guesses, *unused(tables, [n for columns in found.values() for n in columns])])
+    return written(data, [*guesses, *unused_columns(tables, [n for columns in found.values() for n in columns])])
 
 
 def _column(name: str, unit: str, guesses: list[str]) -> dict[str, str]:

@@ -66,7 +66,7 @@ class SensorKind(TableKind[SensorDescription]):
         )
         return [table]
 
-    def said(self, finding: Finding[TableEvidence]) -> list[str]:
+    def notes_on(self, finding: Finding[TableEvidence]) -> list[str]:
         """Say what is known of the load, and in which frame the readings are where this is not the stated frame."""
         view = finding.evidence.table.view
         assert isinstance(view, SensorView)

@@ -29,21 +29,23 @@ BEHIND = 0.5
 """Share of mass and friction that is put behind the gap, since its true share is unknown. Set by that argument."""
 
 
-def unseen_note(evidence: AxisEvidence, after: Fit) -> str:
+def one_encoder_note(evidence: AxisEvidence, after: Fit) -> str:
     """Return what one encoder cannot show of this axis, in words."""
     axis = evidence.axis
     if axis.encoder_at == "load":
         if not axis.servo:
             return f"{axis.name}: one encoder, at the load: play before it moves the motor alone and is not looked for"
-        return _said(f"{axis.name}: one encoder, at the load: ", evidence, after, {"behind"})
+        return _page_notes(f"{axis.name}: one encoder, at the load: ", evidence, after, {"behind"})
     if axis.servo or axis.free:
         return f"{axis.name}: one encoder and no effort: play and springs behind it are not in the data"
     if evidence.mass <= 0.0 or any(view.run.effort is None for view in evidence.records):
         return f"{axis.name}: one encoder and no force balance: play and springs behind it are not in the data"
-    return _said(f"{axis.name}: one encoder: with half of the mass behind it ", evidence, after, {"alone", "drive"})
+    return _page_notes(
+        f"{axis.name}: one encoder: with half of the mass behind it ", evidence, after, {"alone", "drive"}
+    )
 
 
-def _said(head: str, evidence: AxisEvidence, after: Fit, facts: set[str]) -> str:
+def _page_notes(head: str, evidence: AxisEvidence, after: Fit, facts: set[str]) -> str:
     """Return what the pages say that need to know of a single encoder, where nothing like them was named."""
     axis, named = evidence.axis, {t.effect.id for t in after.terms}
     units, mass = (axis.unit_of_position, axis.unit_of_force), BEHIND * evidence.mass
@@ -67,11 +69,11 @@ def shows(evidence: AxisEvidence, after: Fit, page: Effect, shape: Shape) -> boo
         return False
     rubs = sum(abs(float(after.of(i)[0])) for i, t in enumerate(after.terms) if t.effect.dry and t.width)
     sizes = BEHIND * np.array([evidence.mass, rubs])
-    added = _of_runs(evidence, channel, left, [(page, shape)])
+    added = _columns_in(evidence, channel, left, [(page, shape)])
     added = added @ (sizes[: added.shape[1]] if page.signature(evidence.views[0], site, shape).columns else np.ones(1))
     others = [(t.effect, t.shape) for t in after.terms if channel in t.channels and t.width]
     if others:
-        taken = _of_runs(evidence, channel, left, others)
+        taken = _columns_in(evidence, channel, left, others)
         added = added - taken @ np.linalg.lstsq(taken, added, rcond=None)[0]
     ends = np.cumsum([0, *(len(x) for x in left.values())])
     with_it = {r: x + added[a:b, None] for (r, x), a, b in zip(left.items(), ends, ends[1:], strict=False)}
@@ -81,7 +83,7 @@ def shows(evidence: AxisEvidence, after: Fit, page: Effect, shape: Shape) -> boo
     return gap is not None and gap.significant and power > WORTH * excess
 
 
-def _of_runs(evidence: AxisEvidence, channel: Channel, runs: Any, pages: Sequence[tuple[Effect, Shape]]) -> Array:
+def _columns_in(evidence: AxisEvidence, channel: Channel, runs: Any, pages: Sequence[tuple[Effect, Shape]]) -> Array:
     """Return the columns (N, p) of some pages on the samples that count of some runs."""
     rows, seen = [], dict[int, list[Signature]]()
     for r in runs:

@@ -10,11 +10,11 @@ from sher3_chain.axes.causes.behind_encoder import friction_then_hidden, somethi
 from sher3_chain.axes.causes.confounded_laws import parted_by_travel
 from sher3_chain.axes.causes.parted_by_release import parted_by_release
 from sher3_chain.search.away_from_reversals import borne_out
-from sher3_chain.search.one_joint import of_one_joint
+from sher3_chain.search.one_joint import possible_at_one_joint
 
 AXIS = SearchPlan(
     down_to_floor=True,
-    possible=of_one_joint,
+    possible=possible_at_one_joint,
     together=True,
     beyond=rest_loss,
     openings=(Opening(friction_then_hidden, something_hides, worth=WORTH, unseen=True),),

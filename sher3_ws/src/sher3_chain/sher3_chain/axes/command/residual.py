@@ -51,11 +51,11 @@ def floor_of(view: LawView, left: Residual) -> Array:
     steps = np.diff(np.unique(run.command))
     rounded = (float(steps.min()) if len(steps) else 0.0) / UNIFORM
     written = LAW_ROUNDED * float(np.sqrt(np.mean(run.command**2)))
-    apart = (count * run.filtered(shaken).std(), rounded, law.velocity_gain * unread_speed(view), written)
+    apart = (count * run.filtered(shaken).std(), rounded, law.velocity_gain * difference_error(view), written)
     return np.maximum(innovation(left) / foresight(run), max(float(np.linalg.norm(apart)), np.finfo(float).tiny))
 
 
-def unread_speed(view: LawView) -> float:
+def difference_error(view: LawView) -> float:
     """Return the rms error of a speed taken by differences about a sample, m/s or rad/s.
 
     Differences over h are off by a term in h^2: those over 2 h, less those over h, are three times it (Richardson).

@@ -37,7 +37,7 @@ class Filter(NamedTuple):
     corner: float
     order: int
 
-    def undone(self, signals: AxisSignals) -> AxisSignals:
+    def undo(self, signals: AxisSignals) -> AxisSignals:
         """Return the signals with the effort as it was before the filter."""
         if signals.effort is None:
             return signals
@@ -63,7 +63,7 @@ def unfiltered(signals: Sequence[AxisSignals], axis: Axis) -> tuple[Sequence[Axi
     balance = ForceBalance([AxisView(s, axis, 0.0) for s in signals])
 
     def loss(order: int, corner: float) -> float:
-        return balance.loss([s.effort for s in map(Filter(corner, order).undone, signals) if s.effort is not None])
+        return balance.loss([s.effort for s in map(Filter(corner, order).undo, signals) if s.effort is not None])
 
     plain = balance.loss([s.effort for s in signals if s.effort is not None])
     if not plain or not corners:
@@ -75,7 +75,7 @@ def unfiltered(signals: Sequence[AxisSignals], axis: Axis) -> tuple[Sequence[Axi
     found = best[1]
     order = "first" if found.order == 1 else "second"
     note = f"{axis.name}: effort was low-passed before it was recorded, {found.corner:.3g} Hz of {order} order; undone"
-    return [found.undone(s) for s in signals], note
+    return [found.undo(s) for s in signals], note
 
 
 def _best(loss: Callable[[float], float], order: int, corners: Sequence[float], top: float) -> tuple[float, Filter]:

@@ -15,7 +15,7 @@ from sher3_diagnosis.verdict import Cause
 from sher3_effects import pages
 
 from sher3_chain.manipulator.evidence import ArmMotionEvidence
-from sher3_chain.manipulator.library import of_joints
+from sher3_chain.manipulator.library import joint_pages
 from sher3_chain.manipulator.view import MotionView
 from sher3_chain.thresholds import CONFOUNDED, TAKES_PART
 
@@ -35,7 +35,7 @@ GAIN, WEIGHT, PAYLOAD = "drive gain", "weight", "payload"
 
 def same_force() -> list[str]:
     """Return the ids of the effects by which these quantities are off, in their order."""
-    return [e.id for quantity in (GAIN, WEIGHT, PAYLOAD) for e in of_joints() if e.scales == quantity]
+    return [e.id for quantity in (GAIN, WEIGHT, PAYLOAD) for e in joint_pages() if e.scales == quantity]
 
 
 def confounded(columns: Mapping[str, Array]) -> list[frozenset[str]]:

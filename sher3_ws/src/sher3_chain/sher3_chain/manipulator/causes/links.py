@@ -89,7 +89,7 @@ def wrong_links(
     return [(page, found.terms[i].site, page.found(_measured(found, i))) for i in at]
 
 
-def of_a_sum(cause: Cause, term: Term, model: ArmModel) -> Cause:
+def as_sum(cause: Cause, term: Term, model: ArmModel) -> Cause:
     """Return a cause with its numbers as those of a sum where the link that it sits on cannot have them by itself."""
     if term.effect.free() is None:
         return cause

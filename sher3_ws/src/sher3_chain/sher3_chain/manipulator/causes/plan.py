@@ -15,7 +15,7 @@ from sher3_diagnosis.thresholds import NEEDED
 
 from sher3_chain.manipulator.causes.confounding import GAIN
 from sher3_chain.search.away_from_reversals import borne_out
-from sher3_chain.search.one_joint import of_one_joint
+from sher3_chain.search.one_joint import possible_at_one_joint
 from sher3_chain.thresholds import CAUSES_OF_JOINT, CONFOUNDED
 
 LIKE_WEIGHT = "spring"
@@ -63,19 +63,19 @@ def plain_before_richer(candidates: Candidates, trials: list[Fit], given: Sequen
     return [first, *(f for f in trials if f is not first)] if cheaper else trials
 
 
-def of_joint(trial: Fit) -> bool:
+def possible_at_joint(trial: Fit) -> bool:
     """Return whether a trial is possible at a joint of an arm.
 
     A cause that is many times what all of them make together is taken back by another one: over a short travel a weight
     and a cable are alike.
     """
-    return trial.cancelled * CONFOUNDED <= 1.0 and of_one_joint(trial)
+    return trial.cancelled * CONFOUNDED <= 1.0 and possible_at_one_joint(trial)
 
 
 def beside_links(trial: Fit) -> bool:
     """Return whether a trial is possible beside links found from the data: a share of what the model says is not."""
     term = trial.terms[-1]
-    return not term.effect.of_model(term.shape) and of_joint(trial)
+    return not term.effect.scales_model(term.shape) and possible_at_joint(trial)
 
 
 def laws_beside_links(effects: Iterable[Effect]) -> list[Effect]:
@@ -89,7 +89,7 @@ def laws_beside_links(effects: Iterable[Effect]) -> list[Effect]:
 JOINT = SearchPlan(
     causes=CAUSES_OF_JOINT,
     down_to_floor=True,
-    possible=of_joint,
+    possible=possible_at_joint,
     order=plain_before_richer,
     reviews=(borne_out,),
 )

@@ -32,7 +32,7 @@ from sher3_chain.manipulator.causes.lateness import LATE, OF_LAW, Late, lateness
 from sher3_chain.manipulator.causes.links import CLEARLY, wrong_links
 from sher3_chain.manipulator.causes.payload import beside, centred, closes, middle, payloads
 from sher3_chain.manipulator.causes.plan import BESIDE_LINKS, JOINT, TOGETHER, bought, laws_beside_links, spent
-from sher3_chain.manipulator.evidence import ArmMotionEvidence, between, channel_of, of_channel
+from sher3_chain.manipulator.evidence import ArmMotionEvidence, between, channel_of, select_channel
 from sher3_chain.search.friction_in_motion import without_slow
 
 BODILY = {"acceleration", "position"}
@@ -98,7 +98,7 @@ def _explained(
     effects = laws_beside_links(effects) if linked else effects
     alone: list[Attribution] = []
     for channel in (c for joint in evidence.judged for c in (channel_of(joint), between(joint))):
-        own = of_channel(evidence, channel, beside)
+        own = select_channel(evidence, channel, beside)
         say(f"{channel}{' beside ' + ' and '.join(t.site for t in loads) if loads else ''}")
         balance = channel == channel_of(channel.actuator)
         late = lateness(evidence, channel.actuator, beside) if balance else None

@@ -61,7 +61,7 @@ class Drive:
     delay: float = 0.0
     within: tuple[float, float] | None = None
 
-    def asked(self, control: Array) -> Array:
+    def target(self, control: Array) -> Array:
         """Return what a control (n,) asks for: a place, m or rad, or a force, N or N m; NaN where it is infinite."""
         return self.factor * acting(control, self.within)
 

@@ -50,10 +50,10 @@ class Passive:
         for k, actuators in enumerate(self._of):
             for i in actuators:
                 gear = float(self._source.actuator_gear[i][0])
-                out[:, k] += gear * self._of_actuator(i, gear * q[:, k], gear * v[:, k])
+                out[:, k] += gear * self._actuator_force(i, gear * q[:, k], gear * v[:, k])
         return out
 
-    def _of_actuator(self, i: int, length: Array, speed: Array) -> Array:
+    def _actuator_force(self, i: int, length: Array, speed: Array) -> Array:
         bias, gain = self._source.actuator_biasprm[i], self._source.actuator_gainprm[i]
         if self._source.actuator_biastype[i] == AFFINE:
             return np.asarray(bias[0] + bias[1] * length + bias[2] * speed)

@@ -87,7 +87,7 @@ def _acting(run: JointSignals, drives: Mapping[int, Single], way: Acts) -> Joint
     assert run.effort is not None
     steps = max(steps_in(run.period, drive.joint.command_law.loop) for drive in drives.values())
     slow = replace(run, steps=steps if way is held else 1.0)
-    asked = {row: _asked(slow, row, drive) for row, drive in drives.items()}
+    asked = {row: _commanded(slow, row, drive) for row, drive in drives.items()}
     acts = {row: slow.at_rows(way(x, slow.steps)) for row, x in asked.items()}
     if all(np.array_equal(acts[row], asked[row]) for row in drives):
         return run
@@ -100,7 +100,7 @@ def _acting(run: JointSignals, drives: Mapping[int, Single], way: Acts) -> Joint
     return replace(slow, effort=effort, reference=reference, within=within)
 
 
-def _asked(run: JointSignals, row: int, drive: Single) -> Array:
+def _commanded(run: JointSignals, row: int, drive: Single) -> Array:
     """Return what a drive was asked for, (n,): a force, or a place; that of the recorded force where none was logged.
 
     The force is that at the begin of a row, by the speed which the step before left.

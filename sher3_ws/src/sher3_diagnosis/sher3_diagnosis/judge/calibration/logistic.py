@@ -28,7 +28,7 @@ class Logistic(BaseModel):
     offset: tuple[float, ...]
 
     @model_validator(mode="after")
-    def _of_one_size(self) -> Logistic:
+    def _require_one_size(self) -> Logistic:
         widths = {len(self.inputs), len(self.middle), len(self.spread), *map(len, self.weights)}
         if len(widths) > 1 or not len(self.classes) == len(self.weights) == len(self.offset):
             raise ValueError("classes, inputs and weights of a logistic model differ in number")

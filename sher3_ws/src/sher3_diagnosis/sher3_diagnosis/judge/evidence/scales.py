@@ -74,7 +74,7 @@ def beside_others(left: float, numbers: Mapping[str, float]) -> float:
     return float(left * numbers.get("part", 1.0) ** WHOLE)
 
 
-def of_whole(numbers: Mapping[str, float]) -> float:
+def share_of_whole(numbers: Mapping[str, float]) -> float:
     """Return what is left, bends of the law too, as a share of the whole gap, no less than what is told."""
     return min(max(numbers["left"] * numbers.get("part", 1.0), LEAST_SHARE), 1.0)
 
@@ -92,7 +92,7 @@ def strange(numbers: Mapping[str, float]) -> float:
     return stray + bend * bend / (bend + BENT)
 
 
-def unexplained(numbers: Mapping[str, float], of: str = "left", least: float = 0.0) -> float:
+def unexplained_share(numbers: Mapping[str, float], of: str = "left", least: float = 0.0) -> float:
     """Return the share of what is left that no function of whatever was recorded explains, `LEAST_OWN` to 1.
 
     Args:
@@ -112,7 +112,7 @@ def _foreign(numbers: Mapping[str, float]) -> dict[str, float]:
     """
     if "law" not in numbers:
         return {}
-    theirs = 1.0 - unexplained(numbers, "law", LEAST_SHARE)
+    theirs = 1.0 - unexplained_share(numbers, "law", LEAST_SHARE)
     return {"foreign": -math.log(1.0 - theirs * _share(strange(numbers) / max(numbers["left"], LEAST_SHARE)))}
 
 
