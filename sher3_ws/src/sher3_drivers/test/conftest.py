@@ -6,6 +6,7 @@ Helpers beside the tests are importable.
 import itertools
 import os
 import sys
+import tempfile
 from pathlib import Path
 
 import pytest
@@ -33,10 +34,17 @@ def open_interface(number):
         pytest.skip(f"no SocketCAN here: {error}")
 
 
+@pytest.fixture
+def runtime_folder(monkeypatch):
+    """A private folder for the sockets of a test, on a short path: that of a socket has 107 letters at most."""
+    with tempfile.TemporaryDirectory(dir="/tmp") as folder:
+        monkeypatch.setenv("XDG_RUNTIME_DIR", folder)
+        yield Path(folder)
+
+
 @pytest.fixture(params=["virtual", "local", "socketcan"])
-def open_pair(request, tmp_path, monkeypatch):
+def open_pair(request, runtime_folder):
     """A function that opens one more participant of a fresh channel; all are closed at the end."""
-    monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path))
     channel, links = f"t{next(_numbers)}", []
 
     def open_one():
@@ -65,10 +73,9 @@ def pytest_collection_modifyitems(config, items):
 
 
 @pytest.fixture(params=["virtual", "local", "cable", "socketcan"])
-def make_rig(request, tmp_path, monkeypatch):
+def make_rig(request, runtime_folder):
     """A function that builds a rig; the whole suite runs on every back-end: channels one by one in the process or on
     sockets of their own, together on one socket, and on CAN interfaces where there are two."""
-    monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path))
     rigs = []
 
     def make(**changes):

@@ -139,14 +139,12 @@ def test_lockstep_runs_the_other_side(open_pair):
     assert stepped.fileno() == -1 and LinkGroup([stepped]).receive(10.0) == b""
 
 
-def test_python_can_finds_the_interface_by_name(tmp_path, monkeypatch):
-    monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path))
+def test_python_can_finds_the_interface_by_name(runtime_folder):
     with can.Bus(interface="sher3", channel="local:tools") as bus:
         assert bus.recv(0.0) is None
 
 
-def test_a_killed_participant_is_forgotten_and_its_socket_removed(tmp_path, monkeypatch):
-    monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path))
+def test_a_killed_participant_is_forgotten_and_its_socket_removed(runtime_folder):
     script = "import time, sher3_drivers.bus.link as b; a = b.open_link('local:kill'); print(flush=True); time.sleep(9)"
     process = subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE, env=dict(os.environ))
     assert process.stdout is not None and process.stdout.readline() == b"\n"
@@ -161,8 +159,7 @@ def test_a_killed_participant_is_forgotten_and_its_socket_removed(tmp_path, monk
     assert not list(directory.iterdir())
 
 
-def test_wait_sees_frames_of_any_link(tmp_path, monkeypatch):
-    monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path))
+def test_wait_sees_frames_of_any_link(runtime_folder):
     group, other = LinkGroup([LocalLink("a"), LocalLink("b")]), LocalLink("b")
     group.links[1].recv_frames()
     assert group.receive(0.0) == b""
@@ -173,8 +170,7 @@ def test_wait_sees_frames_of_any_link(tmp_path, monkeypatch):
     other.close()
 
 
-def test_a_link_that_fails_is_left_alone_and_the_others_go_on(tmp_path, monkeypatch):
-    monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path))
+def test_a_link_that_fails_is_left_alone_and_the_others_go_on(runtime_folder):
     group, other = LinkGroup([LocalLink("a"), LocalLink("b")]), LocalLink("b")
 
     def down():
@@ -191,9 +187,8 @@ def test_a_link_that_fails_is_left_alone_and_the_others_go_on(tmp_path, monkeypa
 
 
 @pytest.fixture
-def cables(tmp_path, monkeypatch):
+def cables(runtime_folder):
     """Two participants of three channels each, as groups, and one of channel 1 alone."""
-    monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path))
     names = [f"local:c/{i}" for i in range(3)]
     groups = LinkGroup(open_links(names)), LinkGroup(open_links(names))
     alone = open_link("local:c/1")
@@ -249,15 +244,13 @@ def test_what_a_lagging_reader_of_a_cable_loses_is_counted_by_channel(cables):
 @pytest.mark.parametrize(
     ("names", "text"), [(["local:c/0", "local:c/0"], "twice"), (["local:c/0", "local:c/x"], "number")]
 )
-def test_a_channel_of_a_cable_is_named_once_and_by_number(names, text, tmp_path, monkeypatch):
-    monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path))
+def test_a_channel_of_a_cable_is_named_once_and_by_number(names, text, runtime_folder):
     with pytest.raises(LinkError, match=text):
         open_links(names)
     assert not list((runtime_directory() / "can" / "c").iterdir())
 
 
-def test_links_of_several_kinds_go_together(tmp_path, monkeypatch):
-    monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path))
+def test_links_of_several_kinds_go_together(runtime_folder):
     names = ["local:c/0", "virtual:several", "local:d"]
     a, b = LinkGroup(open_links(names)), LinkGroup(open_links(names))
     a.receive()
@@ -270,8 +263,7 @@ def test_links_of_several_kinds_go_together(tmp_path, monkeypatch):
 @pytest.mark.parametrize(
     "specification", ["can0", "usb:can0", "local:", "local:../x", "local:a/256", "local:" + "x" * 40]
 )
-def test_bad_specifications_are_named(specification, tmp_path, monkeypatch):
-    monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path))
+def test_bad_specifications_are_named(specification, runtime_folder):
     with pytest.raises(LinkError, match="limit"):
         open_link(specification)
 
@@ -281,10 +273,9 @@ def test_a_missing_interface_names_the_remedy():
         open_link("socketcan:nonexistent9")
 
 
-def test_a_shared_runtime_directory_is_refused(tmp_path, monkeypatch):
-    monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path))
-    (tmp_path / "sher3").mkdir(mode=0o777)
-    (tmp_path / "sher3").chmod(0o777)
+def test_a_shared_runtime_directory_is_refused(runtime_folder):
+    (runtime_folder / "sher3").mkdir(mode=0o777)
+    (runtime_folder / "sher3").chmod(0o777)
     with pytest.raises(LinkError, match="not private"):
         LocalLink("x")
 

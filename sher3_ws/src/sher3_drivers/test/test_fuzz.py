@@ -74,9 +74,8 @@ def test_no_frame_crashes_a_side(disabled, frames, channel):
         rig.tick()
 
 
-def test_frames_of_channels_that_do_not_exist_crash_no_side(tmp_path, monkeypatch):
+def test_frames_of_channels_that_do_not_exist_crash_no_side(runtime_folder):
     """Bytes of an intruder on a cable, whatever channel they say they are of."""
-    monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path))
     rig = LockstepRig(ROBOT, default_settings(), "intruded")
     rig.driver.configure()
     intruder = LocalCable("intruded")
@@ -208,7 +207,7 @@ def test_any_request_leaves_the_mock_sensor_serving(netft, requests):
 
 @relaxed
 @given(st.lists(st.binary(max_size=70), max_size=8))
-def test_any_datagram_of_the_pedal_is_a_state_or_none(datagrams):
+def test_any_datagram_of_the_pedal_is_a_state_or_none(runtime_folder, datagrams):
     pedal = LocalPedal(f"fuzz-{next(_numbers)}")
     stranger = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM | socket.SOCK_NONBLOCK)
     try:

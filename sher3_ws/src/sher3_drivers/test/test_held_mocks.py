@@ -14,9 +14,8 @@ HELD = 4
 """Ticks for which the process is held up."""
 
 
-def test_drives_that_were_held_up_make_each_step_once_and_answer_the_newest_sync(tmp_path, monkeypatch):
+def test_drives_that_were_held_up_make_each_step_once_and_answer_the_newest_sync(runtime_folder):
     """They are served in the next tick, before its SYNC: hence one step more than there were ticks."""
-    monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path))
     rig = LockstepRig(ROBOT, default_settings(ROBOT.control_period), "held")
     rig.enable()
     for _ in range(5):

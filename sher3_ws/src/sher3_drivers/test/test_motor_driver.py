@@ -44,8 +44,7 @@ def run_cycle(rig):
 
 @pytest.mark.parametrize("period", [0.002, 0.001])
 @pytest.mark.parametrize("kind", ["virtual", "local"])
-def test_the_cycle_on_the_default_layouts(kind, period, tmp_path, monkeypatch):
-    monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path))
+def test_the_cycle_on_the_default_layouts(kind, period, runtime_folder):
     prefix = f"{kind}:c{next(_numbers)}"
     rig = LockstepRig(ROBOT, default_settings(period), lambda i: open_link(f"{prefix}-{i}"))
     run_cycle(rig)
@@ -60,13 +59,12 @@ def test_the_cycle_on_one_channel_of_every_back_end(open_pair):
     rig.close()
 
 
-def test_drives_that_get_their_power_late_are_waited_for_and_run_in_real_time(tmp_path, monkeypatch):
+def test_drives_that_get_their_power_late_are_waited_for_and_run_in_real_time(runtime_folder):
     """The two sides in two threads on the local link, the drives half a second after the driver.
 
     A busy computer may leave either thread waiting for longer than the 0.3 s in which a drive answers, and once no
     answer came for 2 s, nobody knows why: after 20 s it is lost.
     """
-    monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path))
     settings = default_settings().model_copy(update={"sdo_limit": 20.0})
     over = threading.Event()
 

@@ -74,8 +74,7 @@ def test_what_drives_sensors_and_controllers_say_is_no_host(can_id):
     refuse_other_host([ours], 127)
 
 
-def test_it_listens_for_a_while_where_frames_can_be_waited_for(tmp_path, monkeypatch):
-    monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path))
+def test_it_listens_for_a_while_where_frames_can_be_waited_for(runtime_folder):
     ours, other = open_link("local:listen"), open_link("local:listen")
     begin = time.monotonic()
     refuse_other_host([ours], 127)

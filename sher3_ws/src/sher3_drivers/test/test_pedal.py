@@ -67,8 +67,7 @@ def test_a_missing_pedal_is_an_error_at_once():
         HidPedal("/dev/hidraw9999")
 
 
-def test_the_local_pedal_follows_its_sender_and_notices_its_silence(tmp_path, monkeypatch):
-    monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path))
+def test_the_local_pedal_follows_its_sender_and_notices_its_silence(runtime_folder):
     now = [1_000_000_000]
     pedal, sender = LocalPedal(clock=lambda: now[0]), PedalSender()
     assert pedal.read() is None
@@ -85,8 +84,7 @@ def test_the_local_pedal_follows_its_sender_and_notices_its_silence(tmp_path, mo
     assert not sender.send(PedalState(0.0, False))
 
 
-def test_the_sender_finds_a_pedal_that_comes_later_and_one_that_comes_anew(tmp_path, monkeypatch):
-    monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path))
+def test_the_sender_finds_a_pedal_that_comes_later_and_one_that_comes_anew(runtime_folder):
     sender = PedalSender()
     assert not sender.send(PedalState(0.5, False))
     for travel in (0.25, 0.75):

@@ -30,12 +30,11 @@ class HeldUpHost:
         self._drives.poll()
 
 
-def test_an_answer_that_is_kept_back_does_not_keep_the_drives_from_starting(tmp_path, monkeypatch):
+def test_an_answer_that_is_kept_back_does_not_keep_the_drives_from_starting(runtime_folder):
     """The host reads channel 0 only after channel 1 is configured; the drives' heartbeats have filled its queue then.
 
     Their one answer to the start command waits behind them, and nothing but a further frame brings it on its way.
     """
-    monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path))
     settings = default_settings(links=("local:start0", "local:start1"))
     ends = [[open_link(channel.link) for channel in settings.channels] for _ in range(2)]
     time = itertools.count(10**12, 10_000_000)

@@ -14,9 +14,8 @@ from sher3_drivers.settings import default_settings
 
 
 @pytest.fixture
-def served(tmp_path, monkeypatch):
+def served(runtime_folder):
     """Mock drives served by a thread; yields the link of their first channel."""
-    monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path))
     robot, settings, over = load_robot(), default_settings(), threading.Event()
     mock = MockDriveBus(
         [open_link(c.link) for c in settings.channels], IntegratorPlant(robot, settings.period), robot, settings
