@@ -74,7 +74,7 @@ def scored(label: Label, verdict: Verdict | None, seconds: float) -> Scored:
         where = place or (verdict.where[0].actuator if verdict.where else "")
         sought = _sought(label)
         top = any(effect in names and (place in sites or kind != COMPOUND) for names, sites in sought)
-        in_set = all(_found(verdict, names, sites, kind) for names, sites in sought)
+        in_set = all(_is_found(verdict, names, sites, kind) for names, sites in sought)
         placed = any(where in sites for _, sites in sought)
     if kind not in (*KINDS, CABLE, COMPOUND):
         return Scored(label.seed, label.robot, kind, label.joint, status, effect, place, None, None, None, seconds)
@@ -95,7 +95,7 @@ def _sought(label: Label) -> list[tuple[tuple[str, ...], tuple[str, ...]]]:
     return [(NAMES.get(part.kind, ()), place) for part, place in zip(label.fault.parts, places, strict=False)]
 
 
-def _found(verdict: Verdict, names: tuple[str, ...], sites: tuple[str, ...], kind: str) -> bool:
+def _is_found(verdict: Verdict, names: tuple[str, ...], sites: tuple[str, ...], kind: str) -> bool:
     """Return whether a fault is among the causes of a compound case, or the first one or its rival of a single one."""
     causes = verdict.causes if kind == COMPOUND else verdict.causes[:1]
     here = [c for c in causes if kind != COMPOUND or c.actuator in sites]

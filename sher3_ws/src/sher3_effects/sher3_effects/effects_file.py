@@ -117,12 +117,12 @@ def to_effects(causes: Sequence[Cause], robot: Robot) -> list[PlantEffect]:
         values = {name: p.value for name, p in cause.parameters.items()}
         page = library().get(cause.effect)
         for part in page.to_simulator(cause.actuator, values, robot) if page and page.plant else ():
-            made = _made(part)
+            made = _plant_effect(part)
             out.setdefault((made.id, made.actuator), made)
     return list(out.values())
 
 
-def _made(part: Part) -> PlantEffect:
+def _plant_effect(part: Part) -> PlantEffect:
     """Return one effect of the plant: of the values those the plant knows; the others are explanation only."""
     kind = plants()[part.effect]
     site = part.actuator if part.actuator in kind.sites else kind.sites[0]

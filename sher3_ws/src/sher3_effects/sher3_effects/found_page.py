@@ -142,7 +142,7 @@ def read_found(path: Path) -> FoundPage:
 
 def _page(data: Mapping[str, Any], path: Path) -> FoundPage:
     stage, sites = data["stage"], tuple(data["sites"])
-    _known(stage, STAGES, "stage")
+    _require_known(stage, STAGES, "stage")
     terms = tuple(
         SavedTerm(int(t.get("component", 0)), parse(t["feature"]), float(t["coefficient"]), str(t["unit"]))
         for t in data["terms"]
@@ -194,7 +194,7 @@ def _is_dry(feature: Feature) -> bool:
     return [(f.law, f.quantity) for f in feature.factors] == [("sliding", "position")]
 
 
-def _known(value: object, limit: Sequence[str], what: str) -> None:
+def _require_known(value: object, limit: Sequence[str], what: str) -> None:
     if value not in limit:
         raise Sher3Error.unknown(f"no such {what}", value, limit)
 

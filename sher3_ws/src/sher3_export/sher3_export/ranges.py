@@ -111,7 +111,7 @@ def shares_of(verdict: Verdict, worlds: Sequence[Sequence[Cause]]) -> list[float
 
     Without probabilities (in a verdict of before) rivals explain as much, and each world counts alike.
     """
-    own, known = {_key(c) for c in verdict.causes}, _known(verdict)
+    own, known = {_key(c) for c in verdict.causes}, _probability_of_cause(verdict)
 
     def likely(keys: set[str]) -> float:
         return float(np.prod([known.get(key, LEAST) for key in sorted(keys)]))
@@ -122,7 +122,7 @@ def shares_of(verdict: Verdict, worlds: Sequence[Sequence[Cause]]) -> list[float
     return [likely(keys - own) / likely(own - keys) for keys in each]
 
 
-def _known(verdict: Verdict) -> dict[str, float]:
+def _probability_of_cause(verdict: Verdict) -> dict[str, float]:
     """Return how probable each cause is: at the place where it is most probable."""
     if not verdict.places:
         return verdict.probabilities

@@ -102,6 +102,6 @@ def written(path: Path, text: str) -> None:
         raise RequestError(f"{path}: cannot be written", value=error.strerror, remedy="choose another --out") from error
 
 
-def shown(as_json: bool, data: Mapping[str, Any], text: str) -> None:
+def echo_result(as_json: bool, data: Mapping[str, Any], text: str) -> None:
     """Print what was found: as plain data in one JSON object, or in words."""
     typer.echo(json.dumps(data, default=str) if as_json else text)

@@ -73,7 +73,7 @@ def case_of_tables(model: object, tables: Sequence[Tables], rate: float | None, 
         source = source if data["kind"] == "manipulator" else None  # no model belongs to servos by themselves
     if source is not None:
         data["inertias"] = stated.inertias
-    of_tables.put_right(data["axes" if source is None else "joints"], stated, guesses)
+    of_tables.apply_stated(data["axes" if source is None else "joints"], stated, guesses)
     return _case(data, tables, source, guesses, tags)
 
 

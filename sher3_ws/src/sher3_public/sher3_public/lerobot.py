@@ -72,7 +72,7 @@ def from_lerobot(
     if model is None:
         case = case_of_tables(None, runs, None, Stated(), tags)
     else:
-        stated = Stated(tuple(joints)) if joints else _named(source_of(model).bodies.joints, runs[0], guesses)
+        stated = Stated(tuple(joints)) if joints else _joints_by_name(source_of(model).bodies.joints, runs[0], guesses)
         case = case_of_arrays(model, [_arrays(tables) for tables in runs], stated, tags)
     notes = list(case.notes)
     if not episodes and len(runs) < found.total:
@@ -97,7 +97,7 @@ def _guessed(found: DataSet, guesses: list[str]) -> str:
     return unit
 
 
-def _named(known: Collection[str], tables: Mapping[str, Array], guesses: list[str]) -> Stated:
+def _joints_by_name(known: Collection[str], tables: Mapping[str, Array], guesses: list[str]) -> Stated:
     """Return the joints of states and actions by the names of the data set; nothing where the model lacks any."""
     state, action = ([n[len(w) :].removesuffix(".pos") for n in tables if n.startswith(w)] for w in (STATE, ACTION))
     if not set(state) <= set(known):

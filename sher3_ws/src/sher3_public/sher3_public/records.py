@@ -65,7 +65,7 @@ def columns_of(table: Any) -> dict[str, Array]:
     """Return the columns (n, ...) of a table by name, times in s, an index of stamps as the time, texts left out."""
     array = isinstance(table, np.ndarray)
     names = table.dtype.names if array else list(table) if isinstance(table, Mapping) else list(table.columns)
-    found = {_named(name): _as_numbers(table[name]) for name in names}
+    found = {_flat_name(name): _as_numbers(table[name]) for name in names}
     index = np.asarray(getattr(table, "index", [])) if not isinstance(table, Mapping) else np.array([])
     if index.dtype.kind in STAMPS and not any(name.lower() in CLOCKS for name in found):
         found["time"] = index
@@ -74,7 +74,7 @@ def columns_of(table: Any) -> dict[str, Array]:
     return columns
 
 
-def _named(name: object) -> str:
+def _flat_name(name: object) -> str:
     """Return the name of a column as one text; those of several levels are joined."""
     return "_".join(str(x) for x in name if x) if isinstance(name, tuple) else str(name)
 

@@ -46,10 +46,11 @@ def foreseen(run: AxisSignals, residual: Residual, way: Array) -> float:
     noise = run.filtered(np.random.default_rng(0).normal(size=(run.ticks, 1)))[:: run.stride, 0]
     one, other = np.array_split(rows, 2)
     tried = (plain, np.column_stack([plain, way]))
-    return min(0.5 * (_left(x, y, one, other, noise) + _left(x, y, other, one, noise)) for x in tried)
+    halves = ((one, other), (other, one))
+    return min(0.5 * sum(_prediction_innovation(x, y, *rows, noise) for rows in halves) for x in tried)
 
 
-def _left(x: Array, y: Array, fitted: Rows, judged: Rows, noise: Array) -> float:
+def _prediction_innovation(x: Array, y: Array, fitted: Rows, judged: Rows, noise: Array) -> float:
     """Return the standard deviation of white noise with the innovation that a predictor leaves on `judged` rows.
 
     Args:

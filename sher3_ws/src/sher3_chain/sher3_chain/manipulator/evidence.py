@@ -137,7 +137,7 @@ def gather_arm_motion(
     judged = [name for name in judged if name not in slips]
     turned = backwards({name: found[name] for name in judged if name not in own}, stated)
     if turned or own:
-        signals = _put_right(signals, described, turned, scales)
+        signals = _correct_readings(signals, described, turned, scales)
         plain = seen_by(model, np.ones(n))
     inertias = None
     if described.inertias == "identified":
@@ -216,7 +216,7 @@ def not_judged(judged: Sequence[str], signals: Sequence[JointSignals], slips: Ma
     return MachineError("no joint can be judged: too little of the record is motion", value=value, remedy=remedy)
 
 
-def _put_right(
+def _correct_readings(
     signals: Sequence[JointSignals],
     described: ManipulatorDescription,
     turned: Collection[str],

@@ -19,7 +19,7 @@ SHAPED = ("friction", "lost_motion", "compliance")
 """Families whose laws live at a reversal, or shape it."""
 
 
-def borne_out(evidence: Evidence, found: Attribution) -> Attribution:
+def without_reversal_only(evidence: Evidence, found: Attribution) -> Attribution:
     """Return the causes without those that show at reversals alone; the others are fitted again."""
     only = idle_away_from_reversals(evidence, found.fit)
     return found.kept(evidence, [i for i in found.causes if i not in only])

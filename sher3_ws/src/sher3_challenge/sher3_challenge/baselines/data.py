@@ -52,14 +52,14 @@ def _runs(evidence: SherEvidence, channel: Channel) -> list[Array]:
 def _candidate(evidence: SherEvidence, found: Fit) -> Candidate:
     """Return a fit as seen at the channel where it takes most off."""
     term = found.terms[-1]
-    seen = {c: _left(evidence, found, c) for c in sorted(term.channels)}
+    seen = {c: _residuals(evidence, found, c) for c in sorted(term.channels)}
     gains = {c: gain for c, (fitted, gain) in seen.items() if fitted}
     best = max(gains, key=gains.__getitem__)
     size = term.width + len(term.shape)
     return Candidate(term.effect.id, term.effect.family, (best.stage, best.actuator), size, seen[best][0])
 
 
-def _left(evidence: SherEvidence, found: Fit, channel: Channel) -> tuple[list[Array], float]:
+def _residuals(evidence: SherEvidence, found: Fit, channel: Channel) -> tuple[list[Array], float]:
     """Return what a fit of one term leaves of a channel, per run, and the energy it takes off in all."""
     term, gain = found.terms[-1], 0.0
     fitted: list[Array] = []

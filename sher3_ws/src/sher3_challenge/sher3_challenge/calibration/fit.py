@@ -16,7 +16,7 @@ from sher3_diagnosis.judge.calibration.logistic import Logistic
 from sher3_diagnosis.judge.calibration.typical import Typical, distance
 from sher3_diagnosis.judge.evidence.scales import scaled_cause, scaled_exact, scaled_gap
 
-from sher3_challenge.calibration.labels import answer_of, equal, known
+from sher3_challenge.calibration.labels import answer_of, equal, known_effects
 from sher3_challenge.calibration.observe import Observation
 from sher3_challenge.errors import ChallengeError
 
@@ -103,11 +103,11 @@ def examples_of(observations: Sequence[Observation]) -> Examples:
                 out.gaps.append(Example(seen.plant, scaled_gap(item["numbers"]), answer))
                 continue
             out.causes.append(Example(seen.plant, scaled_cause(item["numbers"]), answer))
-            far = [c["unlikeness"] for c in item["candidates"] if equal(c["effect"], known(seen))]
+            far = [c["unlikeness"] for c in item["candidates"] if equal(c["effect"], known_effects(seen))]
             if answer == LIBRARY and far:
                 out.distances.append((min(far), [c["unlikeness"] for c in item["candidates"]]))
         for stage in seen.exact:
-            right = bool(stage["causes"]) and {c["effect"] for c in stage["causes"]} <= known(seen)
+            right = bool(stage["causes"]) and {c["effect"] for c in stage["causes"]} <= known_effects(seen)
             if stage["causes"]:
                 numbers = scaled_exact(stage["closure"])
                 out.exact.append(Example(seen.plant, numbers, LIBRARY if right else OUTSIDE))

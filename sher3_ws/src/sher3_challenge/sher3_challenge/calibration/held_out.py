@@ -17,7 +17,16 @@ from sher3_diagnosis.judge.status import answer_to, answer_to_exact, status_of
 from sher3_diagnosis.verdict import Interval
 
 from sher3_challenge.calibration.fit import calibrated
-from sher3_challenge.calibration.labels import alike, answer_of, company, contains, equal, known, same_data, twins
+from sher3_challenge.calibration.labels import (
+    alike,
+    answer_of,
+    company,
+    contains,
+    equal,
+    known_effects,
+    same_data,
+    twins,
+)
 from sher3_challenge.calibration.observe import Observation
 from sher3_challenge.plants.level import BUILT, SHAPE
 from sher3_challenge.score.reliability import Stated
@@ -55,13 +64,13 @@ class Judgement:
     @property
     def first_right(self) -> bool | None:
         """Whether the first cause of a single fault, but for its company, is the true one; None without a cause."""
-        own = [name for name in self.named if name not in company(self.seen) or equal(name, known(self.seen))]
-        return equal(own[0], known(self.seen)) if self.single and own else None
+        own = [name for name in self.named if name not in company(self.seen) or equal(name, known_effects(self.seen))]
+        return equal(own[0], known_effects(self.seen)) if self.single and own else None
 
     @property
     def in_set(self) -> bool | None:
         """Whether the set of a cause of a single fault holds the true one; None without a cause."""
-        return any(s & known(self.seen) for s in self.sets) if self.single and self.sets else None
+        return any(s & known_effects(self.seen) for s in self.sets) if self.single and self.sets else None
 
     @property
     def set_size(self) -> float | None:
@@ -151,7 +160,7 @@ def _judgement(seen: Observation, whole: Observation, calibration: Calibration, 
         tuple(right),
         tuple(causes),
         excused=bool(seen.without and named) and _no_mistake(named, seen, whole),
-        rightly_named=any(equal(name, known(seen)) for name in found),
+        rightly_named=any(equal(name, known_effects(seen)) for name in found),
     )
 
 

@@ -27,7 +27,7 @@ def answer_of(seen: Observation, item: Row, whole: Observation) -> str | None:
     """
     if item["index"] is None:
         return _gap_label(seen, item, whole)
-    named, true = item["candidates"][0]["effect"], known(seen)
+    named, true = item["candidates"][0]["effect"], known_effects(seen)
     if equal(named, true) or any(equal(name, true) for name in alike(item)):
         return LIBRARY
     status = seen.truth["status"]
@@ -42,7 +42,7 @@ def answer_of(seen: Observation, item: Row, whole: Observation) -> str | None:
     return None if _at_a_fault(seen, item) else NO_GAP
 
 
-def known(seen: Observation) -> set[str]:
+def known_effects(seen: Observation) -> set[str]:
     """Return the true effects that the library holds."""
     return {e["effect"] for e in seen.truth["effects"] if e["family"] != "outside"} - set(seen.without)
 

@@ -52,7 +52,7 @@ def discover(diagnosis: Findings, channel: Channel | None = None, say: Say = sil
     exact = next((e.evidence for e in diagnosis.exact if e.where.stage == channel.stage and e.evidence), None)
     if exact is not None:
         return _discover_exactly(exact(), channel, say)
-    channel = _shown_at(diagnosis, channel)
+    channel = _showing_channel(diagnosis, channel)
     known = sorted({str(c) for f in diagnosis.findings for c in f.evidence.channels})
     finding = next((f for f in diagnosis.findings if channel in f.evidence.channels), None)
     if finding is None:
@@ -98,7 +98,7 @@ def _discover_exactly(evidence: Evidence, place: Channel, say: Say) -> Discovery
     return discover_at(evidence, max(off, key=lambda c: off[c]), say)
 
 
-def _shown_at(diagnosis: Findings, place: Channel) -> Channel:
+def _showing_channel(diagnosis: Findings, place: Channel) -> Channel:
     """Return the channel that shows a place: a leg of the mechanism shows at the tip."""
     every = {c for f in diagnosis.findings for c in f.evidence.channels}
     same = [c for c in every if c.stage == place.stage]

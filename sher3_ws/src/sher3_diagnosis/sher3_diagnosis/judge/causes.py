@@ -11,7 +11,7 @@ from sher3_diagnosis.channel import AT_TIP, Channel
 from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.finding import Finding
 from sher3_diagnosis.fit.tolerance import NUISANCE
-from sher3_diagnosis.judge.evidence.cause import shown_at
+from sher3_diagnosis.judge.evidence.cause import strongest_channel
 from sher3_diagnosis.localise.gaps import Gap
 from sher3_diagnosis.localise.regimes import regime
 from sher3_diagnosis.quantify.closure import closure
@@ -29,7 +29,7 @@ def _cause(evidence: Evidence, attribution: Attribution, index: int) -> Cause:
     found = attribution.fit
     term = found.terms[index]
     without = without_term(evidence, found, index)
-    channel = shown_at(evidence, term, without, found)
+    channel = strongest_channel(evidence, term, without, found)
     moving = attribution.moving
     quantified = (evidence, found) if moving is None else (moving.evidence, moving.fit)
     rivals = [f.terms[-1].effect.id for f in attribution.rivals[index]]

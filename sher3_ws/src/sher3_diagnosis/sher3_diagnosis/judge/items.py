@@ -8,7 +8,7 @@ from sher3_diagnosis.attribute.rivals import Attribution, unlikeness, without_te
 from sher3_diagnosis.channel import AT_TIP, Channel
 from sher3_diagnosis.finding import Candidate, Finding, Item
 from sher3_diagnosis.fit.fitting import Term
-from sher3_diagnosis.judge.evidence.cause import cause_evidence, shown_at
+from sher3_diagnosis.judge.evidence.cause import cause_evidence, strongest_channel
 from sher3_diagnosis.judge.evidence.scales import LEAST_SHARE
 from sher3_diagnosis.thresholds import COVERED
 
@@ -18,7 +18,7 @@ def items_of(finding: Finding) -> list[Item]:
     evidence, attribution = finding.evidence, finding.attribution
     causes = []
     for i in attribution.causes:
-        channel = shown_at(
+        channel = strongest_channel(
             evidence, attribution.fit.terms[i], without_term(evidence, attribution.fit, i), attribution.fit
         )
         numbers = cause_evidence(evidence, attribution, i).numbers()

@@ -63,7 +63,7 @@ def without_empty(
     small = {i for i, c in sized.items() if may_be_zero(found.terms[i], found.of(i), c)}
     for i, cause in sized.items():
         worth = attribution.explained[i]
-        idle = i in small and (carried or not _borne_out(evidence, attribution, i, left))
+        idle = i in small and (carried or not _explains_most(evidence, attribution, i, left))
         if idle or says_nothing(evidence, found, i, cause):
             other = empty.setdefault(cause.actuator, i)
             empty[cause.actuator] = i if worth < attribution.explained[other] else other
@@ -77,7 +77,7 @@ def without_empty(
     return attribution
 
 
-def _borne_out(evidence: Evidence, attribution: Attribution, index: int, left: Left) -> bool:
+def _explains_most(evidence: Evidence, attribution: Attribution, index: int, left: Left) -> bool:
     """Return whether a cause explains most of what is told of its place, or a gap opens without it."""
     terms, worth = attribution.fit.terms, attribution.explained
     beside = sum(worth[k] for k in attribution.causes if k != index and terms[k].site == terms[index].site)
@@ -191,7 +191,7 @@ def impossible(evidence: Evidence, term: Term, coefficients: Array, cause: Cause
         wide = term.effect.family == LOST and term.effect.units.get(name) == "m"
         if wide or (name in sizes and evidence.own_unit(p.unit, term.site) in PLACES):
             limits[name] = (limits.get(name, (0.0 if wide else -travel, travel))[0], travel)
-    return not within(limits, {name: _told(p) for name, p in cause.parameters.items()})
+    return not within(limits, {name: _values_of(p) for name, p in cause.parameters.items()})
 
 
 def _travel(evidence: Evidence, site: str) -> float:
@@ -208,7 +208,7 @@ def _travel(evidence: Evidence, site: str) -> float:
     return max(moved, default=math.inf)
 
 
-def _told(p: Parameter) -> list[float]:
+def _values_of(p: Parameter) -> list[float]:
     return [x for x in (p.low, p.value, p.high) if x is not None]
 
 

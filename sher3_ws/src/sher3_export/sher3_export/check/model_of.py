@@ -13,7 +13,7 @@ from sher3_common import FileError, read_text
 from sher3_description.contract import GRAVITY
 
 from sher3_export.check.engine import mujoco
-from sher3_export.check.recorded import left_alone
+from sher3_export.check.recorded import is_passive
 from sher3_export.errors import ExportError
 from sher3_export.targets.mjcf.whole import whole
 from sher3_export.xml_file import MAX_BYTES, parse_xml, written
@@ -65,7 +65,7 @@ def model_of(parts: Sequence[AxisEvidence]) -> Element:
     SubElement(root, "option", {"timestep": "0.001", "gravity": f"0 0 -{GRAVITY:g}"})
     world, actuators = SubElement(root, "worldbody"), SubElement(root, "actuator")
     for part in parts:
-        if is_law(part) or left_alone(part.axis):
+        if is_law(part) or is_passive(part.axis):
             continue
         axis = part.axis
         if axis.servo or part.mass <= 0.0:

@@ -87,7 +87,7 @@ def recorded(machine: object, runs: Sequence[Any], joints: Mapping[str, str], la
             "check a chain of axes or an arm in motion; the SHER's verdicts are checked by `sher3 gap apply --case`"
         )
         raise ExportError("records of this kind of machine are not run in MuJoCo", remedy=remedy)
-    axes = [axis for axis in machine.described.chain if isinstance(machine, Manipulator) or not left_alone(axis)]
+    axes = [axis for axis in machine.described.chain if isinstance(machine, Manipulator) or not is_passive(axis)]
     coupled = isinstance(machine, Manipulator) and machine.described.coupling is not None
     late = late and not coupled  # what a motor that moves several joints is late by no model can be given
     out, names = [], [run.name for run in runs]
@@ -111,7 +111,7 @@ def carried_by(machine: Axes | Manipulator, runs: Sequence[str], joints: Mapping
     return [[Load(m, joint) for joint, x in each.items() if (m := x[r]) is not None] for r in range(len(runs))]
 
 
-def left_alone(axis: Axis) -> bool:
+def is_passive(axis: Axis) -> bool:
     """Return whether an axis of a chain is in no model: nothing drives it, and nobody knows what it weighs."""
     return axis.free and axis.mass is None
 

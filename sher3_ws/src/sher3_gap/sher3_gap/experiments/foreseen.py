@@ -58,7 +58,7 @@ def foreseen(evidence: SherEvidence, felt: Collection[str]) -> Iterator[Rehearsa
         if added == WARMED:
             yield Rehearsal(SAME, SAME_WHY, WARMED, _warmed(evidence, floor, temperature), elsewhere=False)
         for name in tried:
-            data = _seen([_at(temperature, run) for run in made(name)], robot, known)
+            data = _expected_data([_at(temperature, run) for run in made(name)], robot, known)
             yield Rehearsal(name, WHY, added, data, as_built=partial(_as_built, evidence, data))
 
 
@@ -95,7 +95,7 @@ def _nominal(robot: Robot, name: str) -> list[RunSignals]:
     return [signals_of(run, robot, f"{name} {i}") for i, run in enumerate(rehearse(robot, asked, scatter=None))]
 
 
-def _seen(runs: Sequence[RunSignals], robot: Robot, floor: Floors) -> Standardised:
+def _expected_data(runs: Sequence[RunSignals], robot: Robot, floor: Floors) -> Standardised:
     """Return runs that were never made, `REPEATS` times each, at the channels of a floor; only when they count."""
     geometry = Geometry(robot)
     views = [SherView(run, robot, geometry) for run in runs]

@@ -16,9 +16,9 @@ from sher3_gap_cli.options import (
     Trust,
     VerdictFile,
     case_argument,
+    echo_result,
     reported,
     require_sher_case,
-    shown,
 )
 
 if TYPE_CHECKING:
@@ -54,7 +54,7 @@ def apply(
         odds = bet_lines(verdict, bet)
         stages = compare_case(runs, model, effects) if runs else []
         data = {"effects": str(output), "count": len(effects), "stages": stages_data(stages), "bets": odds}
-        shown(as_json, data, with_bets(odds, applied_text(effects, stages, output)))
+        echo_result(as_json, data, with_bets(odds, applied_text(effects, stages, output)))
 
 
 def compare(
@@ -73,7 +73,7 @@ def compare(
     with reported(as_json):
         runs, model = load_case(require_sher_case(case, TAGS), robot)
         stages = compare_cases(runs, model, load_case(require_sher_case(other, TAGS), robot)[0])
-        shown(as_json, {"stages": stages_data(stages)}, stages_text(stages))
+        echo_result(as_json, {"stages": stages_data(stages)}, stages_text(stages))
 
 
 def applied_text(effects: Sequence[PlantEffect], stages: Sequence[StageGap], output: Path) -> str:

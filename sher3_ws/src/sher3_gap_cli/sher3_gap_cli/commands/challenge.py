@@ -14,7 +14,7 @@ from typing import Annotated
 import typer
 from sher3_common.commands.options import Json
 
-from sher3_gap_cli.options import check_writable, reported, shown
+from sher3_gap_cli.options import check_writable, echo_result, reported
 
 
 def parse_seeds(text: str) -> tuple[int, int]:
@@ -214,4 +214,4 @@ def arms(
         found = run_arms(range(*parse_seeds(seeds)), names, folder, seconds, console.log, sysid, dealt)
         data = {"scores": {name: {"share": x, "cases": n} for name, (x, n) in shares(found).items()}}
         cases = [case.as_dict() for case in found]
-        shown(as_json, {**data, "cases": cases}, table(found))
+        echo_result(as_json, {**data, "cases": cases}, table(found))

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from sher3_common.commands.options import Json
 
-from sher3_gap_cli.options import reported, shown
+from sher3_gap_cli.options import echo_result, reported
 
 if TYPE_CHECKING:
     from sher3_public.simulators.comparing import Comparison
@@ -29,7 +29,7 @@ def compare_simulators(
 
     with reported(as_json):
         found = compared(read_tables(first), read_tables(second), model, (first.stem, second.stem))
-        shown(as_json, data(found), str(found))
+        echo_result(as_json, data(found), str(found))
 
 
 def data(found: Comparison) -> dict[str, Any]:

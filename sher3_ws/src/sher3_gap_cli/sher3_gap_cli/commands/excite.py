@@ -10,7 +10,7 @@ from sher3_common.commands.options import Domain, InNamespace, Json
 from sher3_common.namespace import NAMESPACE
 from sher3_common.progress import Say
 
-from sher3_gap_cli.options import NominalFile, reported, shown
+from sher3_gap_cli.options import NominalFile, echo_result, reported
 
 if TYPE_CHECKING:
     from sher3_description import Robot
@@ -75,7 +75,7 @@ def excite(
     from sher3_gap_cli.printing import steps
 
     if not which:
-        shown(as_json, {"excitations": listing()}, listing_text())
+        echo_result(as_json, {"excitations": listing()}, listing_text())
         return
     with reported(as_json), steps() as say:
         model = load_robot(robot)
@@ -85,7 +85,7 @@ def excite(
         else:
             _on_graph(model, wanted, out, say, domain)
     data = {"case": str(out), "runs": len(wanted)}
-    shown(as_json, data, f"{len(wanted)} runs in {out}; next: sher3 gap diagnose {out}")
+    echo_result(as_json, data, f"{len(wanted)} runs in {out}; next: sher3 gap diagnose {out}")
 
 
 def _simulate(robot: Robot, wanted: list[tuple[Excitation, int]], out: Path, effects: Path | None, seed: int) -> None:

@@ -16,8 +16,8 @@ from sher3_gap_cli.options import (
     Trust,
     VerdictFile,
     check_writable,
+    echo_result,
     reported,
-    shown,
     written,
 )
 
@@ -68,7 +68,7 @@ def export(
         data = _ranges(given, check, model, names, motors) if ranges else _model(given, to, check, model, names, motors)
         written(target, data.pop("text"))
         data = {"file": str(target), **data, "bets": bet_lines(verdict, bet)}
-        shown(as_json, data, with_bets(data["bets"], _text(data)))
+        echo_result(as_json, data, with_bets(data["bets"], _text(data)))
 
 
 def _model(

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 from sher3_common.commands.options import Json
 
-from sher3_gap_cli.options import RobotFile, check_writable, reported, shown, written
+from sher3_gap_cli.options import RobotFile, check_writable, echo_result, reported, written
 
 IMPORT_EXAMPLE = "sher3 gap import DATA_EMPS.mat emps.yaml --out cases/emps"
 
@@ -37,7 +37,7 @@ def import_data(
         notes = import_case(paths[:-1], described(paths[-1]), out)
         number = len(list((out / RUNS).glob("*.npz")))
         text = "\n".join([f"{out}: {number} run{'s' * (number > 1)}", *notes])
-        shown(as_json, {"case": str(out), "runs": number, "notes": notes}, text)
+        echo_result(as_json, {"case": str(out), "runs": number, "notes": notes}, text)
 
 
 def describe(
@@ -61,7 +61,7 @@ def describe(
             written(out, found.text)
         guessed = "\n".join([str(out), *(f"  guessed: {guess}" for guess in found.guesses)])
         text = found.text.removesuffix("\n") if out is None else guessed
-        shown(as_json, {"description": found.text, "guesses": found.guesses}, text)
+        echo_result(as_json, {"description": found.text, "guesses": found.guesses}, text)
 
 
 def case(
@@ -81,4 +81,4 @@ def case(
         runs = assemble(bags, out, robot)
         data = [{"excitation": run.excitation, "repeat": run.repeat, "bag": str(run.bag)} for run in runs]
         lines = [f"  {x['excitation']} {x['repeat']}: {x['bag']}" for x in data]
-        shown(as_json, {"case": str(out), "runs": data}, "\n".join([f"{out}", *lines]))
+        echo_result(as_json, {"case": str(out), "runs": data}, "\n".join([f"{out}", *lines]))

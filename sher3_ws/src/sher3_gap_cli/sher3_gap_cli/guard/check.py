@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from sher3_common.commands.options import Json
 
-from sher3_gap_cli.options import BAD_INPUT, RequestError, check_writable, effects, reported, shown, written
+from sher3_gap_cli.options import BAD_INPUT, RequestError, check_writable, echo_result, effects, reported, written
 
 if TYPE_CHECKING:
     from sher3_public.guard.baseline import Baseline
@@ -51,7 +51,7 @@ def check(
                 written(target, text(found))
         if record is not None and all(t.error is None for t in found):
             written(record, _baseline(found))
-    shown(as_json, {"logs": [_data(t) for t in found]}, _text(found))
+    echo_result(as_json, {"logs": [_data(t) for t in found]}, _text(found))
     if any(t.error is not None for t in found):
         raise typer.Exit(BAD_INPUT)
     if any(t.worse for t in found):

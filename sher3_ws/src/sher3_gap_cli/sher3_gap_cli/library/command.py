@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 from sher3_common.commands.options import Json
 
-from sher3_gap_cli.options import Library, Trust, effects, reported, shown
+from sher3_gap_cli.options import Library, Trust, echo_result, effects, reported
 
 
 def library(
@@ -26,4 +26,4 @@ def library(
     with reported(as_json):
         add_library(own or [], trust)
         rows = library_data(which)
-        shown(as_json, {"effects": rows}, page_text(rows[0]) if len(rows) == 1 else list_text(rows))
+        echo_result(as_json, {"effects": rows}, page_text(rows[0]) if len(rows) == 1 else list_text(rows))

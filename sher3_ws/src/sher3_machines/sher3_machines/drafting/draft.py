@@ -25,7 +25,7 @@ from sher3_machines.drafting.guesses import (
     time_unit,
     travel,
 )
-from sher3_machines.drafting.names import COUNTING, DRIVING, LENGTHS, POSITION, named, words_of
+from sher3_machines.drafting.names import COUNTING, DRIVING, LENGTHS, POSITION, parse, words_of
 from sher3_machines.drafting.roles import DEMANDED, SIGNALS, Place, moves, once, paired, placed, together, values_of
 from sher3_machines.drafting.speeds import checked_by_speed
 from sher3_machines.errors import MachineError
@@ -125,7 +125,7 @@ def drafted(path: Path, tables: Tables, rate: float | None, guesses: list[str], 
     axes = [_axis(axis, signals, tables, period, reached[spelt[axis]], guesses) for axis, signals in groups.items()]
     homes = {place for signals in groups.values() for place in signals.values()}
     unhoused = [n for n in tables if n not in {name for name, _ in homes} and moves(tables[n])]
-    astray = [n for n in unhoused if named(n).signal in ("command", "effort")]  # may drive, and found no axis
+    astray = [n for n in unhoused if parse(n).signal in ("command", "effort")]  # may drive, and found no axis
     for drafted_axis, signals in () if astray else zip(axes, groups.values(), strict=True):
         _let_go(drafted_axis, values_of(signals["position"], tables), guesses, alone=len(axes) == 1)
     checked_by_speed(time, axes, tables, None if clock is None else tables[clock], guesses)
@@ -154,7 +154,7 @@ def drafted(path: Path, tables: Tables, rate: float | None, guesses: list[str], 
 def _spelt(place: Place, axis: str, tables: Tables) -> object:
     """Return what places in one unit share: a table, the words of the name but the axis', and whether it slides."""
     name = place[0]
-    words = frozenset(words_of(bare(name))) - set(named(name).axis.split("_")) - set(axis.split("_"))
+    words = frozenset(words_of(bare(name))) - set(parse(name).axis.split("_")) - set(axis.split("_"))
     return table_of(name), words, _slides(axis, name, tables)
 
 
@@ -172,7 +172,7 @@ def _unit_of(place: Place, axis: str, tables: Tables, x: Array, reached: float) 
 
     `reached` is the largest value of all places that are spelt alike.
     """
-    what = named(place[0])
+    what = parse(place[0])
     if what.signal == "velocity":
         said = ELECTRICAL if "erpm" in place[0].lower() else NAMED
         return (what.unit, 1.0, said) if what.unit in VELOCITIES else ("rad/s", 1.0, "it is a velocity")
@@ -192,7 +192,7 @@ def by_motion(label: str, signals: Mapping[str, Place], tables: Tables, guesses:
     for signal, force, words in (("load", "effort", "an effort and no encoder"), ("reference", "command", "a command")):
         place = out.get(signal)
         said = set(words_of(bare(place[0]))) if place is not None else set()
-        if place is None or named(place[0]).unit is not None or said & (POSITION | DRIVING):
+        if place is None or parse(place[0]).unit is not None or said & (POSITION | DRIVING):
             continue
         is_force = signal == "load" or (said & DEMANDED and "effort" in out)
         if not is_force or ratio_of(out, tables, signal):
@@ -225,7 +225,7 @@ def _axis(
         if signal in signals:
             place = signal in PLACES
             usual = unit if place else per_second(unit) if signal == "velocity" else None
-            counts = place or (signal == "velocity" and named(signals[signal][0]).unit is None)
+            counts = place or (signal == "velocity" and parse(signals[signal][0]).unit is None)
             columns[signal] = _column(*signals[signal], usual, factor if counts else 1.0)
             if signal not in ("position", "velocity"):
                 guesses.append(f"{label}: {signal} is {signals[signal][0]!r}, because of its name")
@@ -319,7 +319,7 @@ def per_second(unit: str) -> str:
 
 
 def _column(name: str, index: int | None, unit: str | None, factor: float) -> dict[str, Any]:
-    own = named(name).unit
+    own = parse(name).unit
     found: dict[str, Any] = {"column": name, "unit": own or unit or "1"}
     if index is not None:
         found["index"] = index

@@ -47,7 +47,7 @@ def draft_of(path: Path, rate: float | None = None, model: Path | None = None, n
             f"{path.name}: too few rows", value=rows, limit=FEWEST, remedy="give the file of the samples"
         )
     if names:
-        return _named(path, tables, rate, model, given(names, tables), [])
+        return _draft_named(path, tables, rate, model, given(names, tables), [])
     try:
         return _draft(path, tables, rate, model)
     except MachineError as refused:
@@ -62,7 +62,7 @@ def draft_of(path: Path, rate: float | None = None, model: Path | None = None, n
             ) from refused
         if not found:
             raise
-        return _named(path, tables, rate, model, found, guesses)
+        return _draft_named(path, tables, rate, model, found, guesses)
 
 
 def _draft(path: Path, tables: Tables, rate: float | None, model: Path | None) -> Draft:
@@ -70,7 +70,7 @@ def _draft(path: Path, tables: Tables, rate: float | None, model: Path | None) -
     return next((found for found in drafts if found is not None), None) or draft(path, rate, tables)
 
 
-def _named(
+def _draft_named(
     path: Path, tables: Tables, rate: float | None, model: Path | None, names: Mapping[Place, str], guesses: list[str]
 ) -> Draft:
     """Return the draft of columns that were named, in the words of the file."""

@@ -9,7 +9,7 @@ import numpy as np
 from sher3_diagnosis.channel import Array
 from sher3_diagnosis.localise.floors import noise_of_bends
 
-from sher3_machines.drafting.names import bare_and_unit, counts_samples, named, tells_time
+from sher3_machines.drafting.names import bare_and_unit, counts_samples, parse, tells_time
 from sher3_machines.errors import MachineError
 from sher3_machines.intake.fields import TIME_UNITS
 from sher3_machines.intake.spelling import bare
@@ -75,7 +75,7 @@ def clock_of(tables: Tables, guesses: list[str]) -> str:
         best = max(clocks, key=lambda n: len(growing[n]))
         guesses.append(f"time is the column {best!r}, because of its name and because it grows")
         return best
-    even = [n for n, x in growing.items() if evenly(x) and not counts_samples(n) and named(bare(n)).signal is None]
+    even = [n for n, x in growing.items() if evenly(x) and not counts_samples(n) and parse(bare(n)).signal is None]
     even = [n for n in even if not counts_rows(growing[n])]
     if even:
         guesses.append(f"time is the column {even[0]!r}, because it grows evenly")

@@ -165,7 +165,7 @@ class Named:
     unit: str | None
 
 
-def named(column: str) -> Named:
+def parse(column: str) -> Named:
     """Return what the name of a column says, with the tables it lies in."""
     *tables, last = PARTING.split(column)
     last = NUMBERED.sub("", last)
@@ -178,7 +178,7 @@ def named(column: str) -> Named:
     if tables and words and set(words) <= READING:  # a channel of a control system: its table has the name
         words = words_of(tables.pop())
     if tables and unit is None and not set(words) & TELLING:  # a file for each signal: its columns are the joints
-        parted = named(tables[-1])
+        parted = parse(tables[-1])
         axis = "_".join(w for w in words if w not in PLAIN and w != NAMELESS)
         return Named(parted.signal, axis or parted.axis, parted.unit)
     if unit == "nm" and set(words) & (EFFORT | CURRENT):

@@ -31,7 +31,7 @@ from sher3_machines.drafting.names import (
     TWOFOLD,
     VELOCITY,
     counts_samples,
-    named,
+    parse,
     vocabulary,
     words_of,
 )
@@ -80,7 +80,7 @@ def placed(tables: Tables, clock: str | None, guesses: list[str], held: bool = F
         guesses: so far.
         held: whether a place that never changes counts: a joint that is held still carries the others.
     """
-    living = _living(counted_alike(_with_targets(_named(tables, clock), tables)), tables, guesses, held)
+    living = _living(counted_alike(_with_targets(_roles_by_name(tables, clock), tables)), tables, guesses, held)
     return with_loads(with_speeds(with_drive(with_output(living, tables))))
 
 
@@ -105,7 +105,7 @@ def counted_alike(placed: Mapping[Place, tuple[str, str]]) -> dict[Place, tuple[
     return out
 
 
-def _named(tables: Tables, clock: str | None) -> dict[Place, tuple[str, str]]:
+def _roles_by_name(tables: Tables, clock: str | None) -> dict[Place, tuple[str, str]]:
     """Return signal and axis of every column whose name says one, of tables that have stamps.
 
     What has the name of the clock and never goes back is the clock of its own table.
@@ -115,7 +115,7 @@ def _named(tables: Tables, clock: str | None) -> dict[Place, tuple[str, str]]:
     found: dict[Place, tuple[str, str]] = {}
     for name, x in tables.items():
         stamped = len(x) == lengths.get(table_of(name), least) or not clock
-        what = named(name)
+        what = parse(name)
         timed = clock is not None and bare(name) == bare(clock) and not (np.diff(x, axis=0) < 0.0).any()
         if what.signal is None or not stamped or timed or counts_samples(name):
             continue
@@ -160,7 +160,7 @@ def _beside(found: Mapping[Place, tuple[str, str]], tables: Tables) -> dict[Plac
 def _with_targets(found: Mapping[Place, tuple[str, str]], tables: Tables) -> dict[Place, tuple[str, str]]:
     """Return the signals with what may be an effort, or a place, as the place that its axis lacks where it is near."""
     signals, out = {what: values_of(p, tables) for p, what in found.items()}, dict(found)
-    efforts = [(p, a) for p, (signal, a) in found.items() if signal == "effort" and named(p[0]).unit not in FORCES]
+    efforts = [(p, a) for p, (signal, a) in found.items() if signal == "effort" and parse(p[0]).unit not in FORCES]
     unsure = [(p, axis, *TWOFOLD[word]) for p, axis in efforts for word in words_of(p[0]) if word in TWOFOLD]
     for p, axis, lacked, beside in unsure:
         x, y = signals.get((beside, axis), np.zeros(0)), values_of(p, tables)
@@ -172,7 +172,7 @@ def _with_targets(found: Mapping[Place, tuple[str, str]], tables: Tables) -> dic
 
 def _says_place(name: str) -> bool:
     """Return whether a name speaks of a place, by a word or a unit, and not of something that was measured alone."""
-    return bool(set(words_of(name)) & ((POSITION | TURNING) - DIRECTIONS)) or named(name).unit is not None
+    return bool(set(words_of(name)) & ((POSITION | TURNING) - DIRECTIONS)) or parse(name).unit is not None
 
 
 def _living(
@@ -219,7 +219,7 @@ def with_output(placed: Mapping[Place, tuple[str, str]], tables: Tables) -> dict
     if pairs and all(n in tables and tables[n].shape == tables[drive].shape for (n, _), (drive, _) in pairs.items()):
         return {**placed, **{p: ("position", axis) for p, (_, axis) in pairs.items()}}
     unsaid = [name for name, x in tables.items() if x.ndim == 1 and (name, None) not in placed and moves(x)]
-    others = {name: named(name) for name in unsaid if not set(words_of(bare(name))) & IGNORED}
+    others = {name: parse(name) for name in unsaid if not set(words_of(bare(name))) & IGNORED}
     places = [n for n, w in others.items() if w.unit in PLACES]
     places = places or [n for n, w in others.items() if w.unit is None and _is_part(n)]
     return {**placed, **{(n, None): ("position", others[n].axis or bare(n)) for n in places}}
@@ -237,7 +237,7 @@ def with_drive(placed: Mapping[Place, tuple[str, str]]) -> dict[Place, tuple[str
     Where an effort was measured, or where the word stands beside one for a load, the torque comes from outside.
     """
     names = {p: (signal, set(words_of(bare(p[0])))) for p, (signal, _) in placed.items()}
-    by_torque = any(signal == "command" and named(p[0]).unit in FORCES for p, (signal, _) in names.items())
+    by_torque = any(signal == "command" and parse(p[0]).unit in FORCES for p, (signal, _) in names.items())
     if not by_torque or any(signal == "effort" and not words & MODELLED for signal, words in names.values()):
         return dict(placed)
     own = [p for p, (signal, words) in names.items() if signal == "applied" and words & APPLIED == {"applied"}]
@@ -273,7 +273,7 @@ def with_loads(placed: Mapping[Place, tuple[str, str]]) -> dict[Place, tuple[str
     """
     out = dict(placed)
     if all(signal != "position" for signal, _ in placed.values()):
-        alone = {p: set(words_of(bare(p[0]))) & (POSITION | SECOND - HELD) or named(p[0]).unit for p in placed}
+        alone = {p: set(words_of(bare(p[0]))) & (POSITION | SECOND - HELD) or parse(p[0]).unit for p in placed}
         kept = {p: what for p, what in placed.items() if what[0] != "load" or alone[p]}
         return {p: ("position" if signal == "load" else signal, axis) for p, (signal, axis) in kept.items()}
     for axis in {axis for _, axis in placed.values()}:
@@ -361,7 +361,7 @@ def paired(
 
 def _same(place: Place, other: Place, tables: Tables) -> bool:
     """Return whether two columns that move are one reading, each in a unit that its name states."""
-    units = [named(p[0]).unit for p in (place, other)]
+    units = [parse(p[0]).unit for p in (place, other)]
     if None in units or units[0] == units[1]:
         return False
     x, y = (values_of(p, tables) * UNITS[str(unit)] for p, unit in zip((place, other), units, strict=True))

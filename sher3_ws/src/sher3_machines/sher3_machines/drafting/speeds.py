@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from sher3_diagnosis.channel import Array
 
-from sher3_machines.drafting.names import named
+from sher3_machines.drafting.names import parse
 from sher3_machines.intake.fields import TIME_UNITS, VELOCITIES
 from sher3_machines.intake.mending.counted import counted_stamps
 from sher3_machines.intake.mending.fields import signed
@@ -46,7 +46,7 @@ def checked_by_speed(
 
 def _counted(signals: Mapping[str, Any]) -> bool:
     """Return whether a place is in counts of a turn that nobody knows, beside a speed whose name has its unit."""
-    stated = named(signals["velocity"]["column"]).unit in VELOCITIES
+    stated = parse(signals["velocity"]["column"]).unit in VELOCITIES
     return signals["position"]["unit"] == "count" and stated and "load" not in signals
 
 

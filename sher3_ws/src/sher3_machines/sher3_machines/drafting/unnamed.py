@@ -15,7 +15,7 @@ import numpy as np
 from sher3_diagnosis.channel import Array
 
 from sher3_machines.drafting.guesses import CROSSINGS, counts_rows, evenly, grows, swings_to_rest
-from sher3_machines.drafting.names import TELLING, bare_and_unit, named, tells_time, words_of
+from sher3_machines.drafting.names import TELLING, bare_and_unit, parse, tells_time, words_of
 from sher3_machines.errors import MachineError
 from sher3_machines.intake.mending.motion import AGREES, FOLLOWS, speed_of, speed_ratio
 from sher3_machines.intake.spelling import bare, table_of
@@ -117,7 +117,8 @@ def _name_columns(tables: Tables, rate: float | None, guesses: list[str]) -> dic
     clock, t, columns = _timed(tables, rate)
     moving = {p: x for p, x in columns.items() if np.isfinite(x).all() and float(np.ptp(x)) > 0.0}
     pairs = [(x, v) for x, v in permutations(moving, 2) if _is_speed(t, moving[x], moving[v])]
-    pairs.sort(key=lambda pair: _left(np.gradient(moving[pair[0]], t), moving[pair[1]])[0])  # before what it drives
+    # Its own speed comes before what the motion drives.
+    pairs.sort(key=lambda pair: _line_residual(np.gradient(moving[pair[0]], t), moving[pair[1]])[0])
     speeds = {v for _, v in pairs}
     found = [(x, v) for x, v in pairs if x not in speeds]
     places = dict.fromkeys(x for x, _ in found)
@@ -158,7 +159,7 @@ def _name_columns(tables: Tables, rate: float | None, guesses: list[str]) -> dic
 def _drives(t: Array, x: Array, v: Array, force: Array) -> bool:
     """Return whether a column (n,) balances inertia and friction of a place with its speed, and is not its slope."""
     slope = np.gradient(v, t)
-    share, ratio = _left(slope, force)
+    share, ratio = _line_residual(slope, force)
     if share < SAME and abs(ratio - 1.0) < SAME:
         return False
     weight, moved = np.column_stack([np.ones_like(x), x]), np.column_stack([slope, v, np.sign(v)])
@@ -178,12 +179,12 @@ def _follows(x: Array, asked: Array) -> bool:
     sides = np.sign(asked - asked.mean())
     if np.sum(np.diff(sides) != 0.0) < CROSSINGS and np.mean(np.diff(asked) != 0.0) > HELD:
         return False
-    left = {d: _left(x[latest:], asked[latest - d : len(asked) - d]) for d in range(latest + 1)}
+    left = {d: _line_residual(x[latest:], asked[latest - d : len(asked) - d]) for d in range(latest + 1)}
     best = min(left, key=lambda d: left[d][0])
     return best > 0 and left[best][0] < 1.0 - FOLLOWS and 1.0 / AS_FAR < abs(left[best][1]) < AS_FAR
 
 
-def _left(x: Array, y: Array) -> tuple[float, float]:
+def _line_residual(x: Array, y: Array) -> tuple[float, float]:
     """Return the share of the variance of one column (n,) that a line over another one leaves, and its slope."""
     x, y = x - x.mean(), y - y.mean()
     slope = float(x @ y) / max(float(y @ y), TINY)
@@ -257,7 +258,7 @@ def _timed(tables: Tables, rate: float | None) -> tuple[Place | None, Array, dic
 def _mute(name: str) -> bool:
     """Return whether a name says nothing of a signal, if only that it is the time."""
     said = set(words_of(bare_and_unit(bare(name))[0]))
-    return bool(WITHOUT.fullmatch(bare(name))) or tells_time(bare(name)) or not (said & TELLING or named(name).signal)
+    return bool(WITHOUT.fullmatch(bare(name))) or tells_time(bare(name)) or not (said & TELLING or parse(name).signal)
 
 
 def _is_speed(t: Array, x: Array, v: Array) -> bool:

@@ -87,7 +87,7 @@ class Column(Strict):
         return spelled(unit) if isinstance(unit, str) else unit
 
     @model_validator(mode="after")
-    def _known(self) -> Column:
+    def _require_known(self) -> Column:
         if self.unit is not None and self.unit not in UNITS:
             raise ValueError(f"unit {self.unit!r} is not known; units are {', '.join(UNITS)}")
         if self.unit == "count" and self.factor == 1.0:

@@ -1,7 +1,7 @@
 """Names of columns as people write them: which signal, of which axis."""
 
 import pytest
-from sher3_machines.drafting.names import bare_and_unit, named, tells_time
+from sher3_machines.drafting.names import bare_and_unit, parse, tells_time
 from sher3_machines.drafting.roles import together
 
 
@@ -115,7 +115,7 @@ from sher3_machines.drafting.roles import together
     ],
 )
 def test_a_name_says_signal_and_axis(column, signal, axis):
-    found = named(column)
+    found = parse(column)
     assert found.signal == signal and (signal is None or found.axis == axis)
 
 
@@ -175,10 +175,10 @@ def test_signals_of_several_axes_find_theirs_by_number():
 
 
 def test_a_unit_may_stand_behind_a_blank():
-    assert (named("Target um").signal, named("Target um").unit) == ("reference", "um")
-    assert named("T Nut").unit is None and named("Motor A").unit is None
+    assert (parse("Target um").signal, parse("Target um").unit) == ("reference", "um")
+    assert parse("T Nut").unit is None and parse("Motor A").unit is None
 
 
 def test_what_points_somewhere_is_a_position():
-    assert (named("az_rad").signal, named("az_cmd_rad").signal) == ("position", "reference")
-    assert named("az_rad").axis == named("az_cmd_rad").axis == "az"
+    assert (parse("az_rad").signal, parse("az_cmd_rad").signal) == ("position", "reference")
+    assert parse("az_rad").axis == parse("az_cmd_rad").axis == "az"

@@ -51,7 +51,7 @@ def check_degrees(
     known = np.isfinite(run.position).all() and np.isfinite(run.time).all() and len(run.time) > 3 * WINDOW
     if most < FURTHEST or not known or drowned(run.position[:, turns]):
         return
-    radians, degrees = (left(names, run, controls, bodies, drives, x)[turns] for x in (1.0, np.pi / 180.0))
+    radians, degrees = (residual_share(names, run, controls, bodies, drives, x)[turns] for x in (1.0, np.pi / 180.0))
     compared = np.isfinite(radians)
     better = np.log(degrees[compared] / radians[compared])
     if not compared.any() or better.max() > 0.0 or better.mean() > np.log(BETTER):
@@ -71,7 +71,7 @@ def drowned(position: Array) -> bool:
     return float((position - course).std(axis=0).max()) > DROWNED * float(course.std(axis=0).max())
 
 
-def left(
+def residual_share(
     names: Sequence[str],
     run: Arrays,
     controls: Sequence[int | None],

@@ -54,7 +54,7 @@ def drives_of(bodies: Bodies, table: Tables, chain: Mapping[str, Any], stated: S
     return stated.drives(bodies, list(bodies.joints), Arrays(seconds, np.empty((0, 0))))
 
 
-def put_right(joints: Sequence[dict[str, Any]], stated: Stated, guesses: list[str]) -> None:
+def apply_stated(joints: Sequence[dict[str, Any]], stated: Stated, guesses: list[str]) -> None:
     """Write gains, counts and delays that are stated into drafted joints; raises InputError for a wrong name."""
     stated.check_names([joint["name"] for joint in joints])
     for joint in joints:

@@ -86,7 +86,7 @@ class Stated:
         if self.servo is None:
             return bodies.drives
         gains = self.servo if isinstance(self.servo, Mapping) else dict.fromkeys(names, self.servo)
-        _known("servo", gains, names)
+        _require_known("servo", gains, names)
         found = dict(bodies.drives)
         for name, (stiffness, damping) in gains.items():
             behind = Step(-0.5 * float(np.median(np.diff(run.time))) * float(damping))
@@ -127,10 +127,10 @@ class Stated:
         """Raise InputError where gains or delays are stated of joints that were not recorded."""
         for what, stated in (("gain", self.gain), ("delay", self.delay)):
             if isinstance(stated, Mapping):
-                _known(what, stated, names)
+                _require_known(what, stated, names)
 
 
-def _known(what: str, stated: Mapping[str, object], names: Sequence[str]) -> None:
+def _require_known(what: str, stated: Mapping[str, object], names: Sequence[str]) -> None:
     wrong = [name for name in stated if name not in names]
     if wrong:
         remedy = "name joints that were recorded"

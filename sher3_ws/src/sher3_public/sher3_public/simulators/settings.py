@@ -123,8 +123,8 @@ def setting_of(model: Any, first: Played, second: Played) -> tuple[str, str]:
     period = float(np.median(np.diff(first.time)))
     if apart == 0.0:
         return "", ""
-    return _made(model, first, period, apart), _made(model, second, period, apart)
+    return _reproducing_setting(model, first, period, apart), _reproducing_setting(model, second, period, apart)
 
 
-def _made(model: Any, trace: Played, period: float, apart: float) -> str:
+def _reproducing_setting(model: Any, trace: Played, period: float, apart: float) -> str:
     return next((s.name for s in settings(model, period) if makes(model, trace, s, ALIKE * apart)), "")

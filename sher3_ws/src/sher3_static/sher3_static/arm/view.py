@@ -60,13 +60,13 @@ class ArmView(Still):
         """Return the change (n, d) of what is seen per rad of a turn about `axis` through a point, (n, 3) each."""
         turn = self.base[:3, :3]
         u, p = axis @ turn.T, through @ turn.T + self.base[:3, 3]
-        return self._seen(np.concatenate([np.cross(u, self.pose[:, :3, 3] - p), u], axis=1))
+        return self._observed(np.concatenate([np.cross(u, self.pose[:, :3, 3] - p), u], axis=1))
 
     def shifted(self, direction: Array) -> Array:
         """Return the change (n, d) of what is seen per m along `direction` (n, 3) in the base frame."""
-        return self._seen(np.concatenate([direction @ self.base[:3, :3].T, np.zeros_like(direction)], axis=1))
+        return self._observed(np.concatenate([direction @ self.base[:3, :3].T, np.zeros_like(direction)], axis=1))
 
-    def _seen(self, change: Array) -> Array:
+    def _observed(self, change: Array) -> Array:
         return self.sight.seen(change[:, :, None], self.pose)[:, :, 0]
 
     def inputs(self, actuator: str) -> Array:

@@ -20,7 +20,7 @@ def held_out(evidence: TableEvidence, after: Fit) -> Array:
     return np.concatenate([x[:, :3] for x in residual_after(evidence, after, evidence.table.channel).values()])
 
 
-def seen(evidence: TableEvidence, after: Fit) -> Array:
+def fitted_errors(evidence: TableEvidence, after: Fit) -> Array:
     """Return the errors (n, 3) or (n, 1), m, under coefficients fitted to all postures."""
     channel, floor = evidence.table.channel, evidence.table.floor
     out = []
@@ -34,7 +34,7 @@ def errors_in_words(evidence: TableEvidence, after: Fit) -> str:
     """Return the error under a fit, of held-out postures and of those fitted."""
     view = evidence.table.view
     assert isinstance(view, ArmView)
-    held, fitted = (MM * np.linalg.norm(x(evidence, after), axis=1) for x in (held_out, seen))
+    held, fitted = (MM * np.linalg.norm(x(evidence, after), axis=1) for x in (held_out, fitted_errors))
     text = f"{view.sight.what} error on held-out postures {held.mean():.2f} mm mean, {held.max():.1f} mm worst"
     return f"{text} ({fitted.mean():.2f} mm on those fitted)"
 

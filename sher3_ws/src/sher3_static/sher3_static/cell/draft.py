@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from sher3_diagnosis.channel import Array
 from sher3_machines.drafting.draft import name_of, unused_columns, written
-from sher3_machines.drafting.names import bare_and_unit, counts_samples, named, tells_time, vocabulary, words_of
+from sher3_machines.drafting.names import bare_and_unit, counts_samples, parse, tells_time, vocabulary, words_of
 from sher3_machines.intake.fields import Column
 from sher3_machines.intake.kind import Draft
 from sher3_machines.intake.spelling import bare
@@ -40,10 +40,10 @@ def loads_of(tables: Tables) -> tuple[str, str] | None:
     flat = {n: x for n, x in tables.items() if x.ndim == 1 and len(x) and np.isfinite(x).mean() >= 1.0 - LACKING}
     if any(tells_time(n) for n in tables) or {"force", "torque"} <= wrench_of(tables).keys():
         return None
-    moved = any(named(n).signal in ("position", "velocity") and np.ptp(x) > 0.0 for n, x in flat.items())
+    moved = any(parse(n).signal in ("position", "velocity") and np.ptp(x) > 0.0 for n, x in flat.items())
     known = (STATED,) if moved else (STATED, FORCE)  # a force beside travel is what a spring or a motor gave
     called = [[n for n in flat if words & set(words_of(bare_and_unit(bare(n))[0]))] for words in known]
-    reads = [n for n in flat if named(n).signal not in PLACES and not counts_samples(n)]
+    reads = [n for n in flat if parse(n).signal not in PLACES and not counts_samples(n)]
     for loads in called:
         pairs = [(load, n) for load in loads for n in reads if n != load and _likeness(flat[load], flat[n]) > FOLLOWS]
         apart = [pair for pair in pairs if not any(pair[1] in names for names in called)] or pairs

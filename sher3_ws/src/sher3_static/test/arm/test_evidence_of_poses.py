@@ -6,7 +6,7 @@ from arms import described, machine, measured
 from sher3_machines import MachineError
 from sher3_static.arm.kind import TIP
 from sher3_static.arm.reading import read_arm
-from sher3_static.arm.words import held_out, seen
+from sher3_static.arm.words import fitted_errors, held_out
 from sher3_static.thresholds import FOLDS
 
 NOISE = 2e-4
@@ -30,7 +30,7 @@ def test_the_frames_are_carried_by_every_fit(evidence):
 
 def test_held_out_errors_are_a_little_larger_than_those_fitted(evidence):
     """Eighteen numbers fitted to 160 positions of three noisy entries: 4 % less power where they are fitted."""
-    held, fitted = (np.mean(x(evidence, evidence.null()) ** 2) for x in (held_out, seen))
+    held, fitted = (np.mean(x(evidence, evidence.null()) ** 2) for x in (held_out, fitted_errors))
     assert held > fitted
     assert fitted == pytest.approx(NOISE**2, rel=0.15)
 

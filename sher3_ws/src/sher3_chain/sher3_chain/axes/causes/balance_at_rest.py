@@ -31,12 +31,12 @@ def rest_loss(evidence: Any, fit: Fit) -> float:
     for view in evidence.records:
         if id(view) in floors and view.at_rest.any():
             floor = floors[id(view)]
-            beyond = np.abs(_left(view, fit, channel)[view.at_rest]) - holds - REST_FLOORS * floor
+            beyond = np.abs(_residual_force(view, fit, channel)[view.at_rest]) - holds - REST_FLOORS * floor
             loss += float(np.sum((np.maximum(beyond, 0.0) / floor) ** 2))
     return loss
 
 
-def _left(view: AxisView, fit: Fit, channel: Channel) -> Array:
+def _residual_force(view: AxisView, fit: Fit, channel: Channel) -> Array:
     """Force (g,) that weight and the causes other than dry friction leave of the measured one."""
     assert view.run.effort is not None
     left = (view.run.to_grid(view.run.effort) - view.path.gravity)[:, 0]

@@ -49,7 +49,9 @@ def best_sampling(signals: Sequence[AxisSignals], axis: Axis) -> Sampling:
     @cache
     def left(sampling: Sampling) -> Array:
         laws = read(sampling.pace)
-        return np.sum([left_by(s, behind(x.parts, sampling.shift)) for s, x in zip(signals, laws, strict=True)], axis=0)
+        return np.sum(
+            [law_residual(s, behind(x.parts, sampling.shift)) for s, x in zip(signals, laws, strict=True)], axis=0
+        )
 
     def noise(sampling: Sampling) -> float:
         return float(left(sampling)[1])
@@ -166,7 +168,7 @@ def _lateness(run: AxisSignals) -> Array:
     return np.column_stack([speed, bend, np.gradient(bend)])
 
 
-def left_by(run: AxisSignals, parts: Array) -> Array:
+def law_residual(run: AxisSignals, parts: Array) -> Array:
     """Return what the parts (n, 3) of a law, each with a gain of its own, leave of the command and its steps; medians.
 
     Steps are second differences: the counts of the encoder stand out in them, which the right sampling has as well,

@@ -140,7 +140,7 @@ class ForceBalance:
     def loss(self, efforts: Sequence[Array]) -> float:
         """Return the smallest held-out loss under these efforts, (n, 1) each, whatever of the columns is left out."""
         tried = zip(self._views, self._columns, efforts, strict=True)
-        left = np.concatenate([_left(view, effort)[ok] for view, (_, ok), effort in tried])
+        left = np.concatenate([_residual_effort(view, effort)[ok] for view, (_, ok), effort in tried])
         return _best(_blocks(self._motion, left))[0] if len(left) >= BLOCKS else 0.0
 
 
@@ -213,10 +213,10 @@ def _equations(view: AxisView) -> tuple[Array, Array]:
     """Columns (n, 7) and the force (n,) that is left over, where the axis moves."""
     x, ok = _columns(view)
     assert view.run.effort is not None
-    return x[ok], _left(view, view.run.effort)[ok]
+    return x[ok], _residual_effort(view, view.run.effort)[ok]
 
 
-def _left(view: AxisView, effort: Array) -> Array:
+def _residual_effort(view: AxisView, effort: Array) -> Array:
     """Return what the motion and the weight leave of an effort (n, 1), on the residual grid, (g,)."""
     return np.asarray(view.run.to_grid(effort)[:, 0] - view.inertial[:, 0])
 

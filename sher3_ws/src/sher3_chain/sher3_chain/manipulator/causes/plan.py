@@ -14,7 +14,7 @@ from sher3_diagnosis.fit.fitting import Fit, Term, fit
 from sher3_diagnosis.thresholds import NEEDED
 
 from sher3_chain.manipulator.causes.confounding import GAIN
-from sher3_chain.search.away_from_reversals import borne_out
+from sher3_chain.search.away_from_reversals import without_reversal_only
 from sher3_chain.search.one_joint import possible_at_one_joint
 from sher3_chain.thresholds import CAUSES_OF_JOINT, CONFOUNDED
 
@@ -91,7 +91,7 @@ JOINT = SearchPlan(
     down_to_floor=True,
     possible=possible_at_joint,
     order=plain_before_richer,
-    reviews=(borne_out,),
+    reviews=(without_reversal_only,),
 )
 """How the causes of one force balance, or of one pair of encoders, are looked for."""
 

@@ -69,7 +69,7 @@ def mounted(
     new = size * direction
     left = effort - free - np.einsum("kni,k->ni", np.array(pulls), new)
     gives_energy = sum(float(np.sign(np.sum((v * left)[judged[:, i], i]))) for i in rows) < 0.0
-    clearer = _left(joints, model.tree.gravity) - _left(joints, new) > CLEARER
+    clearer = _log_residual_share(joints, model.tree.gravity) - _log_residual_share(joints, new) > CLEARER
     return new if clearer and not gives_energy else None
 
 
@@ -99,7 +99,7 @@ def _pull(joints: Sequence[Array], modelled: Array) -> Array:
     return np.asarray(found + hidden * unfelt / max(float(np.linalg.norm(unfelt)), np.finfo(float).tiny))
 
 
-def _left(joints: Sequence[Array], gravity: Array) -> float:
+def _log_residual_share(joints: Sequence[Array], gravity: Array) -> float:
     """Return the log of the share that a gravity leaves of the efforts, summed over the joints."""
     rest = [x[:, 0] - x[:, 1:] @ gravity for x in joints]
     shares = [np.mean(r**2) / np.mean(x[:, 0] ** 2) for r, x in zip(rest, joints, strict=True)]

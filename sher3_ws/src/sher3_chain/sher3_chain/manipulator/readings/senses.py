@@ -55,7 +55,7 @@ def against_model(
     def left(senses: Array) -> float:
         needed = model.needed(senses * q, senses * v, senses * a)
         return sum(
-            _left(needed[ok, i], senses[i] * v[ok, i], senses[i] * effort[ok, i], stated[i])
+            _log_residual_share(needed[ok, i], senses[i] * v[ok, i], senses[i] * effort[ok, i], stated[i])
             for i, ok in zip(rows, judged_at[:, rows].T, strict=True)
         )
 
@@ -94,7 +94,7 @@ def thinned(views: Sequence[MotionView]) -> tuple[Array, Array, Array, Array, Ma
     return q, v, a, effort, judged
 
 
-def _left(needed: Array, v: Array, effort: Array, stated: bool) -> float:
+def _log_residual_share(needed: Array, v: Array, effort: Array, stated: bool) -> float:
     """Return the log of the share of an effort (n,) that the model and friction leave; its sign and unit are free.
 
     Only the sign is, where the gain is stated. There is no constant: weight tells the sense of a joint that lifts.

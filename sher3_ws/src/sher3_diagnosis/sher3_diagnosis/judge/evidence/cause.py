@@ -77,7 +77,7 @@ class CauseEvidence:
         return {name: x for name, x in asdict(self).items() if x is not None}
 
 
-def shown_at(evidence: Evidence, term: Term, before: Fit, after: Fit) -> Channel:
+def strongest_channel(evidence: Evidence, term: Term, before: Fit, after: Fit) -> Channel:
     """Return the channel on which a term explains most."""
     shows = [c for c in sorted(term.channels) if evidence.excess(c) > 0.0] or sorted(term.channels)
     return max(shows, key=lambda c: evidence.excess(c, before) - evidence.excess(c, after))
@@ -87,7 +87,7 @@ def cause_evidence(evidence: Evidence, attribution: Attribution, index: int) -> 
     """Return the evidence for one cause of an attribution."""
     found = attribution.fit
     term, without = found.terms[index], without_term(evidence, found, index)
-    channel = shown_at(evidence, term, without, found)
+    channel = strongest_channel(evidence, term, without, found)
     samples = evidence.samples(channel)
     gap = max(evidence.excess(channel, without), 1.0)
     moving = attribution.moving

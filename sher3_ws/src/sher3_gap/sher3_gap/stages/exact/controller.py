@@ -33,7 +33,7 @@ def controller_finding(runs: Sequence[RunSignals], robot: Robot, without: Collec
     if not bad:
         return None
     gains = {i: gain_error(judged, robot, i) for i in bad}
-    closure = 1.0 - float(_left(judged, robot, gains)[bad].sum() / energy[bad].sum())
+    closure = 1.0 - float(_residual_energy(judged, robot, gains)[bad].sum() / energy[bad].sum())
     causes = _causes(gains, closure) if closure > REPRODUCED and computed("relative").id not in without else []
     gap = float(np.median(top) * np.sqrt(energy[bad].mean() / samples))
     where = exact_place("controller", _site(bad), gap, EXACT * float(np.median(top)), "position modes")
@@ -44,7 +44,7 @@ def _site(axes: Sequence[int]) -> str:
     return "all" if len(axes) > 1 else ACTUATORS[axes[0]]
 
 
-def _left(runs: Sequence[RunSignals], robot: Robot, gains: Mapping[int, float]) -> Array:
+def _residual_energy(runs: Sequence[RunSignals], robot: Robot, gains: Mapping[int, float]) -> Array:
     """Energy that the law with other gains leaves, (axes,), over the velocity limits."""
     top = np.array([a.limits.velocity for a in robot.actuators])
     scale = np.array([1.0 + gains.get(i, 0.0) for i in range(len(top))])

@@ -59,7 +59,7 @@ def _counted(t: Array, x: Array, v: Array, held: bool) -> Array | None:
         return None
     mean = 0.5 * (v[1:] + v[:-1])
     usual = np.mean(mean**2, axis=0)
-    if not usual.all() or _made(t, x, v) < CLEARER * _made(t, x, np.concatenate([v[:1], mean])):
+    if not usual.all() or _speed_mismatch(t, x, v) < CLEARER * _speed_mismatch(t, x, np.concatenate([v[:1], mean])):
         return None
     square = np.sum(mean**2 / usual, axis=1)
     passed = np.sum(np.diff(x, axis=0) * mean / usual, axis=1) / np.maximum(square, np.finfo(float).tiny)
@@ -80,7 +80,7 @@ def _counted(t: Array, x: Array, v: Array, held: bool) -> Array | None:
     return np.asarray(t[0] + np.concatenate([[0.0], np.cumsum(np.where(hole, steps, period * counts))]))
 
 
-def _made(t: Array, x: Array, v: Array) -> float:
+def _speed_mismatch(t: Array, x: Array, v: Array) -> float:
     """Return how far places (n, k) are off what their speeds make of the stamps before, over the speeds: s.
 
     Speeds that were made of the places, as differences over these stamps, say nothing of another clock.
