@@ -6,7 +6,8 @@
 Printed is the table of all cases, of robots with bent and with close laws, and of each plant, by the weights in force:
 once with all that is left of a gap held against its cause (`all left`), once as if each cause stood alone, and once as
 it is judged: less what is a bend of its law, beside the other causes of its gap; with the log loss of the causes' odds.
-Then what other costs make of these odds: right causes called outside against foreign and withheld effects blamed.
+Then the same of gaps of one to three floors alone, and what other costs make of these odds: right causes called outside
+against foreign and withheld effects blamed.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from other_odds import causes_of, surprise
 from sher3_challenge.calibration.drawn import draw
 from sher3_challenge.calibration.held_out import by_plant, by_shape, groups, judged_by, middle
 from sher3_challenge.calibration.observe import Observation, stored, without_evidence
-from sher3_challenge.calibration.table import rates, written
+from sher3_challenge.calibration.table import rates, small, written
 from sher3_challenge.plants.level import SHAPE, Level
 from sher3_challenge.score.rates import Rate
 from sher3_diagnosis.judge.calibration.calibration import in_force
@@ -77,6 +78,8 @@ def main() -> None:
         judged = {group: judged_by(in_force(), rows) for group, rows in own.items()}
         print(f"{name}: {surprise(causes_of(judged['all']))}")
         print(written({group: rates(j) for group, j in judged.items()}) + "\n")
+    few = small(judged_by(in_force(), found))
+    print(f"gaps of one to three floors\n{written({'all': rates(few, small)})}\n")
     for name, seen in {"all": found, **groups(found, by_shape)}.items():
         print(f"{name}, other costs\n{over_costs(seen)}\n")
 

@@ -25,9 +25,14 @@ def clear(judgements: Sequence[Judgement]) -> list[Judgement]:
     return [j for j in judgements if (j.seen.ratio or CLEAR) >= CLEAR]
 
 
-def rates(judgements: Sequence[Judgement]) -> dict[str, Rate]:
-    """Return the rates of one plant over its clear cases."""
-    kept = clear(judgements)
+def small(judgements: Sequence[Judgement]) -> list[Judgement]:
+    """Return the judgements of gaps of one to three floors."""
+    return [j for j in judgements if 1.0 <= (j.seen.ratio or 0.0) < CLEAR]
+
+
+def rates(judgements: Sequence[Judgement], counted: Callable[..., list[Judgement]] = clear) -> dict[str, Rate]:
+    """Return the rates of one plant over the cases that are counted; probabilities are those of all."""
+    kept = counted(judgements)
     whole = [j for j in kept if not j.seen.without]
     shares = {s: _share(whole, s, lambda j: j.said == j.seen.truth["status"]) for s in STATUSES}
     seen = [r.value for r in shares.values() if r.value is not None]
