@@ -12,6 +12,7 @@ from sher3_common import dump_yaml
 from sher3_diagnosis.channel import Array
 
 from sher3_machines.drafting.echoes import measured
+from sher3_machines.drafting.followed import followed
 from sher3_machines.drafting.guesses import (
     NAMED,
     clock_of,
@@ -109,7 +110,7 @@ def drafted(path: Path, tables: Tables, rate: float | None, guesses: list[str], 
         alone = table and sum(n.startswith(table + "/") for n in tables) == 1  # a name with a slash, and no table
         time = {"column": clock if alone else bare(clock)}
         time["unit"] = time_unit(clock, tables[clock], guesses)
-    roles = placed(tables, clock, guesses, held)
+    roles = followed(placed(tables, clock, guesses, held), tables)
     groups, left = together(paired(roles, tables, guesses))
     own = [f"{table_of(signals['position'][0])}/{bare(clock)}" for signals in groups.values() if clock]
     clock = next((name for name in own if name in tables), clock)  # stamps of the joints, not of another topic

@@ -47,7 +47,7 @@ COMMAND = vocabulary(
 CONTROLLERS, OUTPUTS = vocabulary("pid pi controller regler"), vocabulary("output out")
 """Words for a controller and for what comes out of it, which is what drives."""
 ASKED = vocabulary(
-    "ref reference set setpoint sp desired des target tgt goal soll demand commanded cmd command action qg d "
+    "ref reference set setpoint sp desired des target tar tgt goal soll demand commanded cmd command action qg d "
     "planned cmptd computed rsol referência referencia consigna envoyé envoyée envoyee"
 )
 MEASURED = vocabulary(

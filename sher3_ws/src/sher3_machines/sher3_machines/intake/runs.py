@@ -1,4 +1,7 @@
-"""What a path holds as runs: a file or a folder is one; episodes of a data set, of a file and of a folder, one each."""
+"""What a path holds as runs: a file or a folder is one; episodes of a data set, of a file and of a folder, one each.
+
+Sheets of a workbook, and groups of a file, are to it what files are to a folder.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from sher3_machines.intake.readers.lerobot import is_data_set, read_data_set
-from sher3_machines.intake.tables import UNNAMED, Tables, read_tables
+from sher3_machines.intake.tables import UNNAMED, Tables, is_rosbag2, read_tables
 
 EPISODES = (
     "demo|demonstration|ep|episode|exp|experiment|measurement|rec|record|recording|rep|repeat|repetition|"
@@ -22,7 +25,9 @@ NUMBERED = re.compile(rf"(?i:(?P<group>(?:[^/]+/)*?{WORD})/(?P<column>.+))")
 """A column of a group that is numbered as runs are: `data/demo_12/obs/q`, `fourier_test3_results/q`."""
 
 FILE = re.compile(r"(?P<group>[^/]+)/(?P<column>.+)")
-"""A column of a file of a folder."""
+"""A column of a file of a folder, of a sheet, or of a group."""
+BAGS = (".mcap", ".bag", ".db3")
+"""Endings of files whose groups are topics of one log."""
 DIGITS = re.compile(r"[ _-]?\d+")
 STOPPED_TOGETHER = 10.0
 """Periods of the slowest file between whose ends those of the channels of one log lie, which stop together."""
@@ -71,7 +76,7 @@ def _runs(path: Path) -> Mapping[str, Tables]:
     if is_data_set(path):
         return {name: dict(tables) for name, tables in read_data_set(path).episodes.items()}
     tables = read_tables(path)
-    files = episodes_in(tables, FILE) if path.is_dir() else {}
+    files = {} if path.suffix.lower() in BAGS or is_rosbag2(path) else episodes_in(tables, FILE)
     return episodes_in(tables) or files or {path.resolve().name if path.is_dir() else path.stem: tables}
 
 

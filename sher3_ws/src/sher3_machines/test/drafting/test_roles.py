@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from sher3_machines.drafting.followed import followed
 from sher3_machines.drafting.roles import once, placed, together
 
 T = np.arange(0.0, 4.0, 0.002)
@@ -191,3 +192,17 @@ def test_loads_alone_are_cells_and_a_scale_alone_is_a_place():
 
 def test_z_beside_x_and_y_is_a_direction_too():
     assert set(signals_of("x", "y", "z")) == {"x", "y", "z"}
+
+
+@pytest.mark.parametrize("names", [("PosTar (deg)", "Position Demand (deg)"), ("ref_deg", "planned_deg")])
+@pytest.mark.parametrize(("scale", "sense", "zero"), [(1.0, 1.0, 0.0), (1e3, -1.0, 40.0)])
+def test_a_place_follows_the_profile_and_not_the_target_it_was_made_of(names, scale, sense, zero):
+    """Steps, and ramps to them, whatever the order, unit, sense and zero; the place is a sample behind the ramps."""
+    steps = np.sign(np.sin(2.0 * T))
+    ramps = np.convolve(steps, np.full(200, 1.0 / 200), mode="same")
+    place = sense * scale * np.roll(ramps, 1) + zero
+    for order in ((steps, ramps), (ramps, steps)):
+        tables = {**dict(zip(names, order, strict=True)), "actual position [deg]": place}
+        groups, _ = together(followed(placed(tables, None, []), tables))
+        (found,) = groups.values()
+        assert tables[found["reference"][0]] is ramps

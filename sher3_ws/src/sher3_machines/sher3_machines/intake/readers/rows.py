@@ -119,7 +119,7 @@ def _titles(rows: Rows, comma: bool) -> int:
     The header is the row above the numbers whose filled cells are most nearly those that the numbers fill, of several
     the first that is as wide and holds no number: units stand below it. A spreadsheet fills the lines above its table
     up with empty cells, so that they are as wide as the table; a logger of drives writes settings there that are wider,
-    and are no header of it.
+    and are no header of it. Columns that never change, strokes between blocks among them, need no title.
     """
     usual = rows[usual_row(len(rows))]
     numeric = [i for i, cell in enumerate(usual) if _is_number(cell, comma)]
@@ -127,15 +127,18 @@ def _titles(rows: Rows, comma: bool) -> int:
     if not 0 < first <= MOST_TITLES:
         return 0
     filled: set[int] = set()
+    changing: set[int] = set()
     for row in rows[first:]:
         filled |= {i for i in range(len(row)) if i not in filled and _filled(row[i])}
+        changing |= {i for i in numeric if i not in changing and i < len(row) and row[i] != usual[i]}
     above = [{i for i, cell in enumerate(row) if _filled(cell)} for row in rows[:first]]
     if _known_units(rows[first - 1]) and first > 1 and len(rows[first - 2]) == len(rows[first - 1]):
         return first - 2
     fits = [len(row & filled) - len(row - filled) for row in above]
     words = [len(row) == len(usual) and not any(_is_number(cell, comma) for cell in row) for row in rows[:first]]
     header = max(range(first), key=lambda i: (fits[i], words[i]))
-    return header if 2 * fits[header] > len(filled) else len(above)
+    titled = 2 * fits[header] > len(filled) or 2 * len(above[header] & changing) > len(changing)
+    return header if titled else len(above)
 
 
 def names_of(preamble: Rows) -> list[str]:
