@@ -13,6 +13,7 @@ from sher3_diagnosis.channel import Array
 
 from sher3_machines.drafting.echoes import measured
 from sher3_machines.drafting.followed import followed
+from sher3_machines.drafting.grouping import once, paired, together
 from sher3_machines.drafting.guesses import (
     NAMED,
     clock_of,
@@ -27,7 +28,7 @@ from sher3_machines.drafting.guesses import (
     travel,
 )
 from sher3_machines.drafting.names import COUNTING, DRIVING, LENGTHS, POSITION, parse, words_of
-from sher3_machines.drafting.roles import DEMANDED, SIGNALS, Place, moves, once, paired, placed, together, values_of
+from sher3_machines.drafting.roles import DEMANDED, SIGNALS, Place, moves, placed, values_of
 from sher3_machines.drafting.speeds import checked_by_speed
 from sher3_machines.errors import MachineError
 from sher3_machines.intake.fields import TIME_UNITS, VELOCITIES

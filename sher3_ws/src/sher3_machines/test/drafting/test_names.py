@@ -1,8 +1,8 @@
 """Names of columns as people write them: which signal, of which axis."""
 
 import pytest
+from sher3_machines.drafting.grouping import together
 from sher3_machines.drafting.names import bare_and_unit, parse, tells_time
-from sher3_machines.drafting.roles import together
 
 
 @pytest.mark.parametrize(

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 from sher3_machines.drafting.followed import followed
-from sher3_machines.drafting.roles import once, placed, together
+from sher3_machines.drafting.grouping import once, together
+from sher3_machines.drafting.roles import placed
 
 T = np.arange(0.0, 4.0, 0.002)
 
