@@ -41,8 +41,12 @@ AS_FAR = 1.25
 """Travel of one over that of the other from which a place is not told another one: a voltage, of a speed."""
 CIRCLE = 1e-2
 """Share of the square of a radius by which a point on a circle leaves it: a joint that is turned before a tracker."""
+ROUND = 1.0
+"""Radians that such a point goes round at least: any smooth curve is a short arc of a large circle."""
 BALANCED = 0.5
 """Share of what a line over the place leaves of a force that slope, size and sense of the speed explain, at least."""
+HALF = 0.5
+"""Share of a place that a line over a column leaves at most where the column is another place, or one asked for."""
 SAME = 0.1
 """Part by which a column differs from the slope of a speed up to which it is that slope."""
 TINY = 1e-300
@@ -89,9 +93,9 @@ def named_by_motion(tables: Tables, rate: float | None, guesses: list[str]) -> d
     """Return names for columns that have none: the time grows evenly, and a position is the integral of its speed.
 
     A title that says nothing of a signal is none, and a speed alone tells its place there. Elsewhere, where no column
-    is the speed of another, a position is what follows a reference later, or what swings to rest alone;
-    one more column beside a place and its speed that balances the motion is what drives. Several places with their
-    speeds are blocks of a robot's joints. Each table of a folder is told by itself. Empty where there is no time, or
+    is the speed of another, a position is what follows a reference later, or what swings to rest alone; of the columns
+    beside a place and its speed the one that the motion balances best is what drives. Several places with their speeds
+    are blocks of a robot's joints. Each table of a folder is told by itself. Empty where there is no time, or
     where the motion tells nothing.
     """
     of_table: dict[str, Tables] = {}
@@ -146,27 +150,59 @@ def _name_columns(tables: Tables, rate: float | None, guesses: list[str]) -> dic
         named = {x: POSITION}
     else:
         return {}
-    left = [p for p in moving if p not in named]
-    if found and len(left) == 1 and _drives(t, moving[x], moving[other], moving[left[0]]):
-        guesses.append(f"{place_text(left[0])} is the effort, because it balances the motion; nobody named it")
-        named[left.pop()] = EFFORT
-    rest = ", ".join(map(place_text, left))
+    if found:
+        named |= _names_beside(t, x, moving, named, guesses)
+    rest = ", ".join(place_text(p) for p in moving if p not in named)
     guesses.extend([f"not told by the motion: {rest}; name them: --names t,q,..."] if rest else [])
     told = {(name, None): name for name in tables if titled and (name, None) not in columns}
     return {**({clock: "time"} if clock else {}), **named, **told}
 
 
-def _drives(t: Array, x: Array, v: Array, force: Array) -> bool:
-    """Return whether a column (n,) balances inertia and friction of a place with its speed, and is not its slope."""
+def _names_beside(
+    t: Array, x: Place, columns: Mapping[Place, Array], named: Mapping[Place, str], guesses: list[str]
+) -> dict[Place, str]:
+    """Return names of columns (n,) beside a place `x` with its speed: what it follows, and what balances its motion."""
+    out: dict[Place, str] = {}
+    place, speed = columns[x], next(columns[p] for p, name in named.items() if name == VELOCITY)
+    left = [p for p in columns if p not in named]
+    near = [p for p in left if _is_near(place, columns[p])]
+    ahead = [p for p in near if REFERENCE not in named.values() and _follows(place, columns[p])]
+    if ahead:
+        followed = min(ahead, key=lambda p: _line_residual(place, columns[p])[0])
+        guesses.append(f"{place_text(followed)} is the reference, because the place follows it; nobody named it")
+        out[followed] = REFERENCE
+    unbalanced = {p: _unbalanced(t, place, speed, columns[p]) for p in left if p not in near}
+    drive = min(unbalanced, key=lambda p: unbalanced[p], default=None)
+    if drive is not None and unbalanced[drive] < 1.0 - BALANCED:
+        guesses.append(f"{place_text(drive)} is the effort, because it balances the motion; nobody named it")
+        out[drive] = EFFORT
+    return out
+
+
+def _is_near(x: Array, other: Array) -> bool:
+    """Return whether a column (n,) goes where a place goes, in either sense: it is asked for or read, and no force.
+
+    It spans the same numbers, however late and rounded the place is, or lies along a line from another zero.
+    """
+    share, slope = _line_residual(x, other)
+    ends, spans = np.array([x.min(), x.max()]), [np.array([y.min(), y.max()]) for y in (other, -other)]
+    alike = any(np.abs(ends - span).max() < (AS_FAR - 1.0) * np.ptp(ends) for span in spans)
+    return alike or (share < HALF and 1.0 / AS_FAR < abs(slope) < AS_FAR)
+
+
+def _unbalanced(t: Array, x: Array, v: Array, force: Array) -> float:
+    """Return what inertia and friction of a place with its speed leave of a column (n,), of the variance that a line
+    over the place leaves; 1 where it is the slope of the speed.
+    """
     slope = np.gradient(v, t)
     share, ratio = _line_residual(slope, force)
     if share < SAME and abs(ratio - 1.0) < SAME:
-        return False
+        return 1.0
     weight, moved = np.column_stack([np.ones_like(x), x]), np.column_stack([slope, v, np.sign(v)])
     about = force - weight @ np.linalg.lstsq(weight, force, rcond=None)[0]
     both = np.column_stack([weight, moved])
     left = force - both @ np.linalg.lstsq(both, force, rcond=None)[0]
-    return float(np.var(left)) < (1.0 - BALANCED) * float(np.var(about))
+    return float(np.var(left)) / max(float(np.var(about)), TINY)
 
 
 def _follows(x: Array, asked: Array) -> bool:
@@ -280,7 +316,8 @@ def _on_a_circle(x: Array, y: Array) -> bool:
     columns, squares = np.column_stack([x, y, np.ones_like(x)]), x**2 + y**2
     a, b, c = np.linalg.lstsq(columns, squares, rcond=None)[0]
     left = squares - columns @ np.array([a, b, c])
-    return bool(np.std(left) < CIRCLE * (c + 0.25 * (a**2 + b**2)))
+    turned = np.unwrap(np.arctan2(y - 0.5 * b, x - 0.5 * a))
+    return bool(np.std(left) < CIRCLE * (c + 0.25 * (a**2 + b**2)) and np.ptp(turned) > ROUND)
 
 
 def values_at(place: Place, tables: Tables) -> Array:
