@@ -57,10 +57,14 @@ def _shown(block) -> str:
     return f"file: {block.file}" if block.file else block.text
 
 
+BLANK = re.compile(r"\b[A-Z]{2,}(?![\w.])")
+"""What the reader fills in: `--dask ADDRESS`; `DATA.mat` is a file."""
+
+
 def tables() -> list[str]:
-    """Return every command in a table, once; a name with nothing behind it is only a name."""
+    """Return every command in a table, once: a name with nothing behind it is only a name, and a blank is not run."""
     found = {line for page in pages() for _, in_table, line in spans(page) if in_table}
-    return sorted(line for line in found if len(line.split()) > 2)
+    return sorted(x for x in found if len(re.sub("^sher3( gap)?", "", x).split()) > 1 and not BLANK.search(x))
 
 
 SLOW_IN_TABLES = ("sher3 benchtop", "sher3 design", "sher3 paper", "sher3 gap", "sher3 safety --", "sher3 demo")

@@ -218,12 +218,20 @@ axes:
 
 @pytest.mark.slow
 def test_seals(tmp_path):
-    """Half loops grow from 7.0 to 12.3 N between 1 and 7 bar; the force is 6.1 % below pressure times area."""
+    """Half loops grow from 7.0 to 12.3 N between 1 and 7 bar; the force is 6.1 % below pressure times area.
+
+    A constant of 1.3 N beside them, a zero of the force sensor, is in the data: least squares of force over pressure
+    and direction leave 0.98 N rms without and 0.83 N with it, and then 5.9 %.
+    """
     (tmp_path / "cylinder.yaml").write_text(CYLINDER, encoding="utf-8")
     data = [REAL / f"pneumatic_seals/O-ring257_{bar}bar.csv" for bar in (1, 3, 5, 7)]
     verdict = verdict_with("seals", tmp_path / "cylinder.yaml", data, tmp_path)
     found = values(verdict)
     assert verdict.status == "attributed"
-    assert {c.effect for c in verdict.causes} == {"gear_loss", "torque_constant"}
-    assert found["torque_constant", "rod", "relative"] == pytest.approx(-0.061, abs=0.005)
+    assert (
+        {"gear_loss", "torque_constant"}
+        <= {c.effect for c in verdict.causes}
+        <= {"gear_loss", "torque_constant", "gravity_load"}
+    )
+    assert found["torque_constant", "rod", "relative"] == pytest.approx(-0.06, abs=0.005)
     assert found["gear_loss", "rod", "share"] > 0.0
