@@ -21,18 +21,33 @@ FORCEFUL = ("N", "kg")
 def in_true_force(causes: Sequence[Cause]) -> list[Cause]:
     """Return the causes with forces and masses as they act on their joints.
 
-    They stay as they are on a joint where no gain was found, or one that another mass stands in for: the forces are
-    then right. A controller's gain in the place of a drive's is the same force.
+    They stay as they are on a joint where no gain was found. A controller's gain in the place of a drive's is the same
+    force. Where something else may stand in for the gain, such as another mass, forces stay as reported, which is right
+    then, and their intervals hold both.
     """
     same_force = {page.id: {page.id, *page.indistinct} for page in pages("axis") if page.scales == GAIN}
-    sure = (c for c in causes if c.effect in same_force and same_force[c.effect].issuperset(c.rivals))
-    gains = {c.actuator: c.parameters["relative"] for c in sure}
-    return [_acting(cause, gains[cause.actuator]) if cause.actuator in gains else cause for cause in causes]
+    gains = {c.actuator: c for c in causes if c.effect in same_force}
+    doubted = {joint for joint, c in gains.items() if not same_force[c.effect].issuperset(c.rivals)}
+    return [
+        _acting(c, gains[c.actuator].parameters["relative"], c.actuator in doubted) if c.actuator in gains else c
+        for c in causes
+    ]
 
 
-def _acting(cause: Cause, gain: Parameter) -> Cause:
-    parameters = {n: _times(p, gain) if p.unit.startswith(FORCEFUL) else p for n, p in cause.parameters.items()}
-    return cause.model_copy(update={"parameters": parameters})
+def _acting(cause: Cause, gain: Parameter, doubted: bool) -> Cause:
+    out = dict(cause.parameters)
+    for name, p in cause.parameters.items():
+        if p.unit.startswith(FORCEFUL):
+            out[name] = _holding(p, _times(p, gain)) if doubted else _times(p, gain)
+    return cause.model_copy(update={"parameters": out})
+
+
+def _holding(parameter: Parameter, other: Parameter) -> Parameter:
+    """Return a parameter whose interval holds that of another, too."""
+    if parameter.low is None or parameter.high is None or other.low is None or other.high is None:
+        return parameter
+    low, high = min(parameter.low, other.low), max(parameter.high, other.high)
+    return parameter.model_copy(update={"low": low, "high": high})
 
 
 def _times(parameter: Parameter, gain: Parameter) -> Parameter:
