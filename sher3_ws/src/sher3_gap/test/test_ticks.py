@@ -101,3 +101,25 @@ def test_commands_that_are_dropped_often_are_the_robots():
 
 def test_a_recording_that_is_not_live_is_taken_as_it_is():
     assert signals_of(RUN, ROBOT).held is None and signals_of(RUN, ROBOT).stale is None
+
+
+@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize(("late", "gap"), [(60, False), (0, True)])
+def test_demands_are_held_no_more_often_than_the_computer_is_late_elsewhere(seed, late, gap):
+    """At one tick in sixty of a computer that was late at one in twenty: not the robot's; of one in time they are."""
+    draw = np.random.default_rng(seed)
+
+    def held_up(run):
+        moves = np.abs(np.diff(run.command, axis=0)).max(axis=1)
+        begin = int(draw.integers(30, 200))
+        lost = np.zeros(run.ticks, dtype=bool)
+        lost[begin : begin + late] = True
+        away = np.flatnonzero(moves[1:-2] > np.quantile(moves, 0.3)) + 3
+        away = away[(away < begin - 20) | (away > begin + late + 20)]
+        echo, steep = run.echo.copy(), draw.choice(away, 20, replace=False)
+        echo[steep] = run.command[steep - 2]
+        return {"echo": echo, "lost": lost}
+
+    run = live(held_up)
+    error = np.abs(transport_error(run)).max(axis=1)
+    assert (np.count_nonzero(error > 1e-12) > 10) == gap

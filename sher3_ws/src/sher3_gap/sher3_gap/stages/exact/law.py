@@ -22,7 +22,8 @@ EXACT = 1e-9
 ROUNDING = 1e-7
 """The same for demands that went through the integers of a drive's protocol."""
 SPORADIC = 0.005
-"""Share of ticks at which the demand of a live robot may be held for once, away from ticks that show a late host."""
+"""Share of ticks at which the demand of a live robot may be held for once, away from ticks that show a late host; as
+many as those where these are more."""
 AROUND = 15
 """Ticks before and behind one that shows a late host."""
 LATE_SHARE = 0.1
@@ -90,22 +91,17 @@ def with_lateness(run: RunSignals, robot: Robot) -> RunSignals:
     if echo is not None:
         assert run.command is not None and run.echo is not None
         odd = np.abs(echo / top).max(axis=1) > ROUNDING
-        near = _around(run, stale)
+        shown = np.zeros(run.ticks, dtype=bool)
+        for mask in (run.lost, stale):
+            shown |= False if mask is None else mask
+        near = np.convolve(shown, np.ones(2 * AROUND + 1), "same") > 0.5
         earlier = [np.abs((run.echo - delayed(run.command, n)) / top).max(axis=1) < ROUNDING for n in (2, 3)]
         rest = odd & ~near
-        late = _late(rest, np.logical_or(*earlier)) if rest.mean() <= SPORADIC else np.zeros_like(odd)
+        often = rest.mean() > max(SPORADIC, shown.mean())
+        late = np.zeros_like(odd) if often else _late(rest, np.logical_or(*earlier))
         held = (odd & near) | late
         held = held if held.any() else None
     return replace(run, stale=stale, held=held)
-
-
-def _around(run: RunSignals, stale: NDArray[np.bool_] | None) -> NDArray[np.bool_]:
-    """Ticks within `AROUND` of one that was lost or stale, (n,)."""
-    late = np.zeros(run.ticks, dtype=bool)
-    for mask in (run.lost, stale):
-        if mask is not None:
-            late |= mask
-    return np.convolve(late, np.ones(2 * AROUND + 1), "same") > 0.5
 
 
 def _late(odd: NDArray[np.bool_], explained: NDArray[np.bool_]) -> NDArray[np.bool_]:
