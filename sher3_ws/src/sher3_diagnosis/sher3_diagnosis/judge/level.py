@@ -1,12 +1,12 @@
-"""How far one machine is from its pages: nobody knows beforehand, and what its places leave tells it.
+"""How far one machine is from its pages: nobody knows beforehand, and what its places leave tells each of the others.
 
 Weights were set on robots that are imperfect to 0.3 to 10 %. A machine of which the drawing alone is known may be worse
 at every place. What a right cause leaves is then compared with the level L of that machine, and not with those robots:
 
-    P(right | left) = sum over L of P(L | what all places leave) P(right | left, L),
+    P(right | left) = sum over L of P(L | what its other places leave) P(right | left, L),
 
-where what is left of the gap, over what laws explain of it, counts in units of the level. A place tells of itself as of
-the others. A wrong cause, which leaves much, excuses itself in part only: it may be foreign, and then tells no level.
+where what is left of the gap, over what laws explain of it, counts in units of the level. The level at a place is told
+by the other places alone: otherwise a wrong cause, which leaves much, would excuse itself.
 """
 
 from __future__ import annotations
@@ -25,28 +25,28 @@ LEVELS = (0.003, 0.01, 0.03, 0.1, 0.3)
 USUAL = 0.017
 """Level that the weights take for granted: the middle of what labelled robots are drawn with (`SHAPE`)."""
 SPREAD = 1.0
-"""Standard deviation of the logarithm of what one place leaves about its machine's level: 0.6 on drawn axes, 1.6 on
-arms in motion, of which a compliance may leave nothing beside a rippled force, 0.4 on arms seen from outside."""
+"""Standard deviation of the logarithm of what one place leaves about its machine's level: 0.5 on labelled axes, 0.7 on
+arms in motion, 0.3 on arms seen from outside (`bench/imperfect.py`), and more on machines whose parts are unlike."""
 FOREIGN = (0.3, 0.2, 1.0)
 """Share of places whose cause is foreign, and middle and spread of what is left there: it tells no level."""
-EVEN = 0.7
-"""Mean of the two shares that no function explains at which they speak neither way. Of 0.5 to 0.8, with exponents of 1
-to 1.5 on the factor, this one and 1 have the least log loss of causes of those that blame no more foreign ones, 5 of
-115, than did the level of the other places alone (`docs/reference/odds-elsewhere.md`)."""
+LAWFUL = (1.25, 0.6)
+"""Exponent of the shares that no function explains, and their mean at which they speak neither way. Of 1 to 1.5 and 0.5
+to 0.7 within 1 of the least log loss, 159 on 174 places of axes and arms, of which half have foreign causes that count
+half, and on their causes (`bench/imperfect.py`, `bench/other_odds.py`)."""
 BENT_BY = 1e-4
 """Share of the gap below which what is left is nothing, whatever explains it: the power of a law bent by 1 %, as those
-of good machines are. The log loss above grows by 5 with it, with ten times as much by 67."""
+of good machines are. The log loss above grows by 1 with it; a tenth as much lowers it by 3."""
 SHARES = ("left", "stray")
 """Evidence that is a share of the gap."""
 
 
-def level_weights(items: Sequence[Item]) -> Array:
-    """Return the weight of each level, as the causes of all places of a machine tell, (k,); even without any."""
+def level_weights(items: Sequence[Item]) -> list[Array]:
+    """Return for each cause or gap the weight of each level, as the causes of the other places tell, (k,)."""
     left: dict[Channel, list[float]] = {}
     for item in (i for i in items if i.index is not None):
         left.setdefault(item.channel, []).append(math.log(share_of_whole(at_level(item.numbers, USUAL))))
-    weight = np.prod([np.ones(len(LEVELS)), *(_likely(float(np.mean(x))) for x in left.values())], axis=0)
-    return np.asarray(weight / weight.sum())
+    likely = {channel: _likely(float(np.mean(x))) for channel, x in left.items()}
+    return [_normalised([x for channel, x in likely.items() if channel != item.channel]) for item in items]
 
 
 def at_level(numbers: Mapping[str, float], level: float) -> dict[str, float]:
@@ -70,7 +70,14 @@ def lawful(numbers: Mapping[str, float]) -> float:
     """
     if "anything" not in numbers:
         return 1.0
-    return EVEN**2 / (unexplained_share(numbers, "left", BENT_BY) * unexplained_share(numbers, "law", BENT_BY))
+    exponent, even = LAWFUL
+    left, law = (unexplained_share(numbers, of, BENT_BY) for of in ("left", "law"))
+    return float((even**2 / (left * law)) ** exponent)
+
+
+def _normalised(likely: Sequence[Array]) -> Array:
+    weight = np.prod([np.ones(len(LEVELS)), *likely], axis=0)
+    return np.asarray(weight / weight.sum())
 
 
 def _likely(log_left: float) -> Array:

@@ -31,12 +31,14 @@ def judged_together(
     """
     if not own_level:
         return [judged(i, calibration, c) for i, c in zip(items, closures, strict=True)]
-    weight = level_weights(items)
-    return [_over_levels(i, calibration, c, weight) for i, c in zip(items, closures, strict=True)]
+    return [
+        _over_levels(i, calibration, c, weight)
+        for i, c, weight in zip(items, closures, level_weights(items), strict=True)
+    ]
 
 
 def _over_levels(item: Item, calibration: Calibration, closure: Interval | None, weight: Array) -> Judged:
-    """Return an item with its probabilities over all levels of its machine, of weights (k,)."""
+    """Return an item with its probabilities over all levels of its machine, (k,) weights."""
     if item.index is None:
         return judged(item, calibration)
     each = [judged(replace(item, numbers=at_level(item.numbers, x)), calibration, closure) for x in LEVELS]
