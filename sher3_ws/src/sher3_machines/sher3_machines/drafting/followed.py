@@ -7,6 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from sher3_machines.drafting.roles import Place
+from sher3_machines.drafting.unnamed import line_residual, values_at
 from sher3_machines.intake.spelling import table_of
 from sher3_machines.intake.tables import Tables
 
@@ -19,8 +20,10 @@ def followed(placed: Mapping[Place, tuple[str, str]], tables: Tables) -> dict[Pl
     """
     out = dict(placed)
     for position, (signal, axis) in placed.items():
-        asked = [p for p, what in placed.items() if signal == "position" and what == ("reference", axis)]
-        asked = [p for p in asked if table_of(p[0]) == table_of(position[0])]
+        if signal != "position":
+            continue
+        table, role = table_of(position[0]), ("reference", axis)
+        asked = [p for p, what in placed.items() if what == role and table_of(p[0]) == table]
         for p in sorted(asked, key=lambda p: _unlike(position, p, tables))[1:]:
             out.pop(p, None)
     return out
@@ -28,8 +31,8 @@ def followed(placed: Mapping[Place, tuple[str, str]], tables: Tables) -> dict[Pl
 
 def _unlike(place: Place, other: Place, tables: Tables) -> float:
     """Return what a line over one column (n,) leaves of the variance of another one, as a share; 1 where it stands."""
-    x, y = (tables[name] if index is None else tables[name][:, index] for name, index in (place, other))
+    x, y = values_at(place, tables), values_at(other, tables)
     rows = np.isfinite(x) & np.isfinite(y) if len(x) == len(y) else np.zeros(0, dtype=bool)
     if not rows.any() or not (np.ptp(x[rows]) > 0.0 and np.ptp(y[rows]) > 0.0):
         return 1.0
-    return 1.0 - float(np.corrcoef(x[rows], y[rows])[0, 1]) ** 2
+    return line_residual(x[rows], y[rows])[0]

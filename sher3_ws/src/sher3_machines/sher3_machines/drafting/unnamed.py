@@ -122,7 +122,7 @@ def _name_columns(tables: Tables, rate: float | None, guesses: list[str]) -> dic
     moving = {p: x for p, x in columns.items() if np.isfinite(x).all() and float(np.ptp(x)) > 0.0}
     pairs = [(x, v) for x, v in permutations(moving, 2) if _is_speed(t, moving[x], moving[v])]
     # Its own speed comes before what the motion drives.
-    pairs.sort(key=lambda pair: _line_residual(np.gradient(moving[pair[0]], t), moving[pair[1]])[0])
+    pairs.sort(key=lambda pair: line_residual(np.gradient(moving[pair[0]], t), moving[pair[1]])[0])
     speeds = {v for _, v in pairs}
     found = [(x, v) for x, v in pairs if x not in speeds]
     places = dict.fromkeys(x for x, _ in found)
@@ -168,7 +168,7 @@ def _names_beside(
     near = [p for p in left if _is_near(place, columns[p])]
     ahead = [p for p in near if REFERENCE not in named.values() and _follows(place, columns[p])]
     if ahead:
-        followed = min(ahead, key=lambda p: _line_residual(place, columns[p])[0])
+        followed = min(ahead, key=lambda p: line_residual(place, columns[p])[0])
         guesses.append(f"{place_text(followed)} is the reference, because the place follows it; nobody named it")
         out[followed] = REFERENCE
     unbalanced = {p: _unbalanced(t, place, speed, columns[p]) for p in left if p not in near}
@@ -184,7 +184,7 @@ def _is_near(x: Array, other: Array) -> bool:
 
     It spans the same numbers, however late and rounded the place is, or lies along a line from another zero.
     """
-    share, slope = _line_residual(x, other)
+    share, slope = line_residual(x, other)
     ends, spans = np.array([x.min(), x.max()]), [np.array([y.min(), y.max()]) for y in (other, -other)]
     alike = any(np.abs(ends - span).max() < (AS_FAR - 1.0) * np.ptp(ends) for span in spans)
     return alike or (share < HALF and 1.0 / AS_FAR < abs(slope) < AS_FAR)
@@ -195,7 +195,7 @@ def _unbalanced(t: Array, x: Array, v: Array, force: Array) -> float:
     over the place leaves; 1 where it is the slope of the speed.
     """
     slope = np.gradient(v, t)
-    share, ratio = _line_residual(slope, force)
+    share, ratio = line_residual(slope, force)
     if share < SAME and abs(ratio - 1.0) < SAME:
         return 1.0
     weight, moved = np.column_stack([np.ones_like(x), x]), np.column_stack([slope, v, np.sign(v)])
@@ -215,12 +215,12 @@ def _follows(x: Array, asked: Array) -> bool:
     sides = np.sign(asked - asked.mean())
     if np.sum(np.diff(sides) != 0.0) < CROSSINGS and np.mean(np.diff(asked) != 0.0) > HELD:
         return False
-    left = {d: _line_residual(x[latest:], asked[latest - d : len(asked) - d]) for d in range(latest + 1)}
+    left = {d: line_residual(x[latest:], asked[latest - d : len(asked) - d]) for d in range(latest + 1)}
     best = min(left, key=lambda d: left[d][0])
     return best > 0 and left[best][0] < 1.0 - FOLLOWS and 1.0 / AS_FAR < abs(left[best][1]) < AS_FAR
 
 
-def _line_residual(x: Array, y: Array) -> tuple[float, float]:
+def line_residual(x: Array, y: Array) -> tuple[float, float]:
     """Return the share of the variance of one column (n,) that a line over another one leaves, and its slope."""
     x, y = x - x.mean(), y - y.mean()
     slope = float(x @ y) / max(float(y @ y), TINY)

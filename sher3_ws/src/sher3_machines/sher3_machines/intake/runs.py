@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from sher3_machines.intake.readers.lerobot import is_data_set, read_data_set
-from sher3_machines.intake.tables import UNNAMED, Tables, is_rosbag2, read_tables
+from sher3_machines.intake.tables import UNNAMED, Tables, is_bag, read_tables
 
 EPISODES = (
     "demo|demonstration|ep|episode|exp|experiment|measurement|rec|record|recording|rep|repeat|repetition|"
@@ -26,8 +26,6 @@ NUMBERED = re.compile(rf"(?i:(?P<group>(?:[^/]+/)*?{WORD})/(?P<column>.+))")
 
 FILE = re.compile(r"(?P<group>[^/]+)/(?P<column>.+)")
 """A column of a file of a folder, of a sheet, or of a group."""
-BAGS = (".mcap", ".bag", ".db3")
-"""Endings of files whose groups are topics of one log."""
 DIGITS = re.compile(r"[ _-]?\d+")
 STOPPED_TOGETHER = 10.0
 """Periods of the slowest file between whose ends those of the channels of one log lie, which stop together."""
@@ -76,7 +74,7 @@ def _runs(path: Path) -> Mapping[str, Tables]:
     if is_data_set(path):
         return {name: dict(tables) for name, tables in read_data_set(path).episodes.items()}
     tables = read_tables(path)
-    files = {} if path.suffix.lower() in BAGS or is_rosbag2(path) else episodes_in(tables, FILE)
+    files = {} if is_bag(path) else episodes_in(tables, FILE)
     return episodes_in(tables) or files or {path.resolve().name if path.is_dir() else path.stem: tables}
 
 

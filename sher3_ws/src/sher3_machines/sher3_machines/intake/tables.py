@@ -217,6 +217,11 @@ def is_rosbag2(path: Path) -> bool:
     return path.is_dir() and (path / "metadata.yaml").is_file()
 
 
+def is_bag(path: Path) -> bool:
+    """Whether a file or a folder is a bag, whose groups are topics of one log."""
+    return is_rosbag2(path) or READERS.get(path.suffix.lower()) is read_bag
+
+
 def _read(path: Path, reader: Callable[[Path], Tables]) -> Tables:
     try:
         return join_curves(with_whole_clocks(as_long(upright(reader(path)))))

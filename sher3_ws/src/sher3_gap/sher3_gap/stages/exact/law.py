@@ -91,9 +91,7 @@ def with_lateness(run: RunSignals, robot: Robot) -> RunSignals:
     if echo is not None:
         assert run.command is not None and run.echo is not None
         odd = np.abs(echo / top).max(axis=1) > ROUNDING
-        shown = np.zeros(run.ticks, dtype=bool)
-        for mask in (run.lost, stale):
-            shown |= False if mask is None else mask
+        shown = ~replace(run, stale=stale).command_counts
         near = np.convolve(shown, np.ones(2 * AROUND + 1), "same") > 0.5
         earlier = [np.abs((run.echo - delayed(run.command, n)) / top).max(axis=1) < ROUNDING for n in (2, 3)]
         rest = odd & ~near
